@@ -22,6 +22,13 @@ class Fault:
     text: str
     reason: str
 
+    @property
+    def position(self) -> tuple[int, ...]:
+        """
+        Return line and column, for reports in the order of the file; empty without a place.
+        """
+        return tuple(int(part) for part in self.place.split(":")[-2:] if part.isdigit())
+
     def __str__(self) -> str:
         """
         Return the fault as one line of a compiler-like report.

@@ -1,0 +1,205 @@
+"""
+What stepgen does, as Python functions; the command line is a thin layer on top.
+
+`load`, `plan` and `generate` take one spec and write nothing. `generate_all`, `write` and
+`check` take several: all faults of all specs are reported together, and nothing is written
+unless every spec is fine and every target may be replaced.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from stepgen.errors import Fault, StepgenError
+from stepgen.library.render import render_library
+from stepgen.library.write import (
+    WriteResult,
+    check_library,
+    check_zip,
+    refusals,
+    write_library,
+    zip_library,
+    zip_refusals,
+)
+from stepgen.plan.model import Plan
+from stepgen.plan.planner import make_plan
+from stepgen.spec import LoadedSpec, load_spec
+
+Track = Callable[[Sequence[Path]], Iterable[Path]]
+"""Passes the specs on one by one, to show progress; such as ``rich.progress.track``."""
+
+
+@dataclass(frozen=True)
+class Generated:
+    """
+    The library of one spec, not yet written: its files, path -> text.
+    """
+
+    loaded: LoadedSpec
+    plan: Plan
+    files: dict[str, str]
+
+    @property
+    def name(self) -> str:
+        """
+        Return the library's name, which is also that of its folder.
+        """
+        return self.plan.library.name
+
+
+def load(path: Path) -> LoadedSpec:
+    """
+    Load the spec in *path* and check its shape and its local rules.
+
+    Raises:
+        StepgenError: All faults of the spec, each with its place and a way out.
+    """
+    return load_spec(path)
+
+
+def plan(path: Path) -> Plan:
+    """
+    Return what stepgen decides for the spec in *path*: every number, every conflict.
+
+    Raises:
+        StepgenError: All faults and conflicts of the spec.
+    """
+    return make_plan(load_spec(path))
+
+
+def generate(path: Path) -> dict[str, str]:
+    """
+    Return the library of the spec in *path*, path inside the library -> text.
+
+    Raises:
+        StepgenError: All faults and conflicts of the spec.
+    """
+    return _generate(path).files
+
+
+def generate_all(paths: Sequence[Path], *, track: Track = iter) -> tuple[Generated, ...]:
+    """
+    Return the library of each spec in *paths*, in their order.
+
+    Raises:
+        StepgenError: All faults of all specs, and each name that two libraries share.
+    """
+    faults: list[Fault] = []
+    made = []
+    for path in track(paths):
+        try:
+            made.append(_generate(path))
+        except StepgenError as error:
+            faults += error.faults
+    faults += _shared_names(made)
+    if faults:
+        raise StepgenError(faults)
+    return tuple(made)
+
+
+def write(
+    paths: Path | Sequence[Path],
+    output_dir: Path,
+    *,
+    zipped: bool = False,
+    force: bool = False,
+    track: Track = iter,
+) -> tuple[WriteResult, ...]:
+    """
+    Write the library of each spec in *paths* to ``output_dir/<name>``; return what was done.
+
+    Args:
+        paths: One spec or several.
+        output_dir: The folder of the libraries' folders; it is made if missing.
+        zipped: Write ``output_dir/<name>.zip`` instead of a folder.
+        force: Also overwrite files of stepgen's that somebody has edited; never others.
+        track: Shows progress.
+
+    Raises:
+        StepgenError: All faults of all specs, or why targets are refused. Nothing was written
+            then; only when the disk itself fails can earlier libraries of the call be there.
+    """
+    made = generate_all(_several(paths), track=track)
+    faults = [
+        fault
+        for library in made
+        for fault in _refusals(library, output_dir, zipped=zipped, force=force)
+    ]
+    if faults:
+        raise StepgenError(faults)
+    return tuple(_write(library, output_dir, zipped=zipped, force=force) for library in made)
+
+
+def check(
+    paths: Path | Sequence[Path],
+    output_dir: Path,
+    *,
+    zipped: bool = False,
+    track: Track = iter,
+) -> dict[Path, list[str]]:
+    """
+    Return what is stale, missing or extra in each library that `write` would write.
+
+    Returns:
+        The library's folder or zip -> a line for each difference; no lines where it is fresh.
+
+    Raises:
+        StepgenError: All faults of all specs, or what cannot be read.
+    """
+    found = {}
+    for library in generate_all(_several(paths), track=track):
+        target = _target(library, output_dir, zipped=zipped)
+        found[target] = (
+            check_zip(library.files, library.name, target)
+            if zipped
+            else check_library(library.files, target)
+        )
+    return found
+
+
+def _several(paths: Path | Sequence[Path]) -> Sequence[Path]:
+    return [paths] if isinstance(paths, Path) else paths
+
+
+def _generate(path: Path) -> Generated:
+    loaded = load_spec(path)
+    decided = make_plan(loaded)
+    return Generated(loaded, decided, render_library(decided, loaded.document.text))
+
+
+def _shared_names(made: Sequence[Generated]) -> Iterable[Fault]:
+    """
+    Yield a fault for each library whose folder an earlier one has; case does not tell folders.
+    """
+    first: dict[str, Generated] = {}
+    for library in made:
+        earlier = first.setdefault(library.name.lower(), library)
+        if earlier is not library:
+            other = earlier.loaded.document.path
+            yield library.loaded.fault(
+                ("library", "name"),
+                f"is the library of {other} too, and each needs a folder of its own; "
+                "rename one of them, or write them in two runs to two folders",
+            )
+
+
+def _target(library: Generated, output_dir: Path, *, zipped: bool) -> Path:
+    return output_dir / (f"{library.name}.zip" if zipped else library.name)
+
+
+def _refusals(library: Generated, output_dir: Path, *, zipped: bool, force: bool) -> list[Fault]:
+    target = _target(library, output_dir, zipped=zipped)
+    if zipped:
+        return zip_refusals(library.name, target)
+    return refusals(library.files, target, force=force)
+
+
+def _write(library: Generated, output_dir: Path, *, zipped: bool, force: bool) -> WriteResult:
+    target = _target(library, output_dir, zipped=zipped)
+    if zipped:
+        existed = target.exists()
+        done = (target.name,)
+        if not zip_library(library.files, library.name, target):
+            return WriteResult(target, unchanged=done)
+        return WriteResult(target, changed=done) if existed else WriteResult(target, written=done)
+    return write_library(library.files, target, force=force)

@@ -1,0 +1,3 @@
+"""
+The commands of stepgen, one module each; `stepgen.cli` puts them together.
+"""

@@ -1,0 +1,88 @@
+"""
+``stepgen plan``: what the planner decided, for people and for programs.
+"""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from stepgen import api
+from stepgen.commands.dump import plain
+from stepgen.commands.report import print_tables, say
+from stepgen.plan.coils import CoilDrive
+from stepgen.plan.model import MotorPlan, Plan
+
+EXAMPLE = "Example: stepgen plan specs/uno_motor_shield.yaml --json"
+
+Row = tuple[str, ...]
+
+
+def plan(
+    spec: Annotated[Path, typer.Argument(metavar="SPEC", help="A YAML file.")],
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="Print all of it as JSON.")] = False,
+) -> None:
+    """
+    Show every number that stepgen decides for a spec: wires, kernel, timer, range, cycles.
+    """
+    decided = api.plan(spec)
+    if as_json:
+        say(json.dumps(plain(decided), indent=2, ensure_ascii=False))
+        return
+    motors = [(f"Motor {motor.name}", (), _motor_rows(motor)) for motor in decided.motors]
+    print_tables([("Library", (), _library_rows(decided)), *motors])
+
+
+def _library_rows(decided: Plan) -> Iterable[Row]:
+    board = decided.board
+    clock_hz = board.f_cpu_hz
+    yield ("library", f"{decided.library.name} {decided.library.version}")
+    yield ("board", f"{board.title}: {board.mcu.title} at {clock_hz / 1e6:g} MHz")
+    yield ("uses", ", ".join(decided.uses) or "no other library")
+    yield ("shortest period", _period(decided.minimum_period_cycles, clock_hz))
+    yield ("longest period", _period(decided.largest_period_cycles, clock_hz))
+    yield ("longest step interrupt", f"at most {decided.isr_bound_cycles} cycles")
+
+
+def _period(cycles: int, clock_hz: int) -> str:
+    microseconds = cycles * 1e6 / clock_hz
+    return f"{cycles} cycles = {microseconds:.10g} us: {clock_hz / cycles:.6g} steps/s"
+
+
+def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
+    path = motor.hot_path
+    yield ("drive", f"{motor.drive.title}, {motor.drive.sequence} steps")
+    yield ("wires", "\n".join(_wires(motor.drive)))
+    yield ("phases", " ".join(_digits(phase) for phase in motor.drive.phases))
+    yield ("ports", f"{motor.port_letters}, {'owned' if motor.owns_ports else 'shared'}")
+    yield ("kernel", motor.kernel.kind)
+    yield ("timer", f"{motor.timing.timer.number}, {motor.timing.kind}, {motor.timing.vector}")
+    yield ("motion", motor.motion)
+    yield ("steps per turn", _turn(motor))
+    yield ("at rest", "coils off" if motor.releases_at_rest else "coils hold")
+    yield ("step interrupt", f"{path.usual_cycles} cycles, response to RETI")
+    yield (
+        "until the edge",
+        f"{path.edge_cycles} cycles, {path.boundary_edge_cycles} at a boundary",
+    )
+
+
+def _wires(drive: CoilDrive) -> Iterable[str]:
+    roles = {"": drive.wires, ", enable": drive.enables, ", stays LOW": drive.quiet}
+    for role, wires in roles.items():
+        for wire in wires:
+            yield f"{wire.signal}: {wire.pin.label} ({wire.pin.bit.name}){role}"
+
+
+def _digits(phase: tuple[bool, ...]) -> str:
+    return "".join(str(int(high)) for high in phase)
+
+
+def _turn(motor: MotorPlan) -> str:
+    steps = motor.steps_per_turn
+    if steps is None:
+        return "not given"
+    return str(steps) if steps.denominator == 1 else f"{steps} = {float(steps):.8g}"

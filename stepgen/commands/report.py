@@ -1,0 +1,135 @@
+"""
+What the commands print: faults like a good compiler's, tables that also fit a pipe.
+"""
+
+import os
+import re
+import unicodedata
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from pathlib import Path
+
+import typer
+
+from stepgen.errors import Fault
+
+WRONG = 2  # exit code of wrong use and of an invalid spec
+FAILED = 1  # exit code of a failed comparison, lint or freshness check
+
+_PLACE = re.compile(r"(?P<path>.+):(?P<line>\d+):(?P<column>\d+)", re.DOTALL)
+_LINE_END = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # as YAML counts lines
+_LONGEST_LINE = 100
+_LEAD = 30
+
+
+def say(text: str) -> None:
+    """
+    Print *text* on stdout.
+    """
+    typer.echo(text, color=_color())
+
+
+def complain(text: str) -> None:
+    """
+    Print *text* on stderr.
+    """
+    typer.echo(text, err=True, color=_color())
+
+
+def report_faults(faults: Iterable[Fault]) -> None:
+    """
+    Print each fault on stderr, with its line of the spec and a caret under the column.
+    """
+    for fault in faults:
+        head, _, rest = printable(str(fault)).partition("error: ")
+        complain(typer.style(head, bold=True) + typer.style("error: ", fg="red", bold=True) + rest)
+        for line in source_lines(fault):
+            complain(line)
+
+
+def source_lines(fault: Fault) -> tuple[str, ...]:
+    """
+    Return the line that *fault* is about and the line with the caret; nothing without a place.
+    """
+    match = _PLACE.fullmatch(fault.place)
+    lines = _read_lines(match["path"]) if match else ()
+    if not match or not 1 <= int(match["line"]) <= len(lines):
+        return ()
+    line = lines[int(match["line"]) - 1]
+    at = min(int(match["column"]) - 1, len(line))
+    if not line.strip():
+        return ()
+    cut = max(0, at - _LEAD) if len(line) > _LONGEST_LINE else 0
+    shown = line[cut : cut + _LONGEST_LINE]
+    marked = len(fault.text) if line.startswith(fault.text, at) else 1
+    tail = "~" * (_width(shown[at - cut : at - cut + marked]) - 1)
+    lead = "".join("\t" if c == "\t" else " " * _width(c) for c in shown[: at - cut])
+    return (f"    {printable(shown)}", f"    {lead}^{tail}")
+
+
+def printable(text: str) -> str:
+    """
+    Return *text* with its control characters shown as ``?``: a spec must not steer a terminal.
+    """
+    return "".join("?" if unicodedata.category(c) == "Cc" and c not in "\t\n" else c for c in text)
+
+
+def _width(text: str) -> int:
+    """
+    Return the columns that *text* takes in a terminal.
+    """
+    marks = sum(unicodedata.combining(c) != 0 for c in text)
+    return len(text) - marks + sum(unicodedata.east_asian_width(c) in "WF" for c in text)
+
+
+@lru_cache(maxsize=4)
+def _read_lines(path: str) -> tuple[str, ...]:
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig", errors="replace")
+    except OSError:
+        return ()
+    return tuple(_LINE_END.split(text))
+
+
+def _color() -> bool | None:
+    """
+    Return False where the user wants no colour; None leaves it to what the output is.
+    """
+    return False if os.environ.get("NO_COLOR") else None
+
+
+def print_tables(parts: Sequence[tuple[str, Sequence[str], Iterable[Sequence[str]]]]) -> None:
+    """
+    Print tables of title, heading and rows; 80 columns wide where the output is no terminal.
+
+    A title may be "" and a heading ().
+    """
+    from rich import box  # noqa: PLC0415 - rich takes as long to import as a spec to generate
+    from rich.console import Console  # noqa: PLC0415 - the same
+    from rich.table import Table  # noqa: PLC0415 - the same
+
+    console = Console(markup=False, highlight=False, emoji=False)
+    for index, (title, heading, rows) in enumerate(parts):
+        table = Table(*heading, box=box.SIMPLE, show_header=bool(heading))
+        table.show_edge = table.pad_edge = False
+        for row in rows:
+            table.add_row(*row)
+        if index:
+            console.print()
+        if title:
+            console.print(title, style="bold")
+        console.print(table)
+
+
+def track(paths: Sequence[Path]) -> Iterable[Path]:
+    """
+    Pass *paths* on, with a progress bar on stderr when there are several and it is a terminal.
+    """
+    if len(paths) == 1:
+        return iter(paths)
+    from rich.console import Console  # noqa: PLC0415 - rich is slow to import
+    from rich.progress import track as rich_track  # noqa: PLC0415 - the same
+
+    console = Console(stderr=True)
+    shown = console.is_terminal
+    return rich_track(paths, "Generating", console=console, transient=True, disable=not shown)

@@ -1,0 +1,29 @@
+"""
+What datasheets and boards say: chips, ports, timers, vectors, pins, and other libraries.
+"""
+
+from stepgen.devices.catalogue import boards, find_board
+from stepgen.devices.libraries import (
+    SKETCH_LIBRARIES,
+    LibraryClaims,
+    SketchLibrary,
+    library_claims,
+)
+from stepgen.devices.model import Board, Mcu, Pin, Port, PortBit, Register, Timer16, Vector
+
+__all__ = [
+    "SKETCH_LIBRARIES",
+    "Board",
+    "LibraryClaims",
+    "Mcu",
+    "Pin",
+    "Port",
+    "PortBit",
+    "Register",
+    "SketchLibrary",
+    "Timer16",
+    "Vector",
+    "boards",
+    "find_board",
+    "library_claims",
+]

@@ -1,0 +1,3 @@
+"""
+One module per chip, each with its facts as ``MCU``.
+"""

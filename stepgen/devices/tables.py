@@ -1,0 +1,101 @@
+"""
+Short ways to write a datasheet's tables down, so that a person can check them at a glance.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+
+from stepgen.devices.model import Pin, Port, PortBit, Register, Timer16, Vector
+
+_PORT_BIT = re.compile(r"P([A-L])([0-7])")
+
+
+def port_bit(name: str) -> PortBit:
+    """
+    Return the port bit that a datasheet calls *name*, such as ``PB4``.
+
+    Raises:
+        ValueError: *name* is no port bit.
+    """
+    match = _PORT_BIT.fullmatch(name)
+    if match is None:
+        raise ValueError(f"{name} is no port bit")
+    return PortBit(match[1], int(match[2]))
+
+
+def port(letter: str, pin_address: int, bits: Sequence[int]) -> Port:
+    """
+    Return a port whose PIN, DDR and PORT follow each other from *pin_address* (data space).
+    """
+    pin, ddr, output = (
+        Register(f"{kind}{letter}", pin_address + offset)
+        for offset, kind in enumerate(("PIN", "DDR", "PORT"))
+    )
+    return Port(letter, pin, ddr, output, tuple(bits))
+
+
+def vectors(names: str) -> tuple[Vector, ...]:
+    """
+    Return the vectors 1, 2, 3 ... from *names*, separated by blanks, without ``_vect``.
+    """
+    return tuple(Vector(f"{name}_vect", number) for number, name in enumerate(names.split(), 1))
+
+
+def timer16(
+    number: int,
+    base: int,
+    table: Sequence[Vector],
+    outputs: Mapping[str, str],
+    capture_input: str,
+) -> Timer16:
+    """
+    Return a 16-bit timer, whose registers lie alike on every classic ATmega.
+
+    From *base* on: TCCRnA, B, C, a gap, TCNTn, ICRn, OCRnA, OCRnB and, where *outputs* has
+    a channel C, OCRnC, two bytes each; TIMSKn is 0x6E + n and TIFRn 0x35 + n.
+
+    Args:
+        number: The n of TCCRnA.
+        base: Data-space address of TCCRnA.
+        table: The chip's vectors.
+        outputs: Pin of each compare channel, such as ``{"A": "PB1"}``.
+        capture_input: Pin ICPn.
+    """
+    by_name = {vector.name: vector for vector in table}
+    has_c = "C" in outputs
+    return Timer16(
+        number=number,
+        tccra=Register(f"TCCR{number}A", base),
+        tccrb=Register(f"TCCR{number}B", base + 1),
+        tccrc=Register(f"TCCR{number}C", base + 2),
+        tcnt=Register(f"TCNT{number}", base + 4),
+        icr=Register(f"ICR{number}", base + 6),
+        ocra=Register(f"OCR{number}A", base + 8),
+        ocrb=Register(f"OCR{number}B", base + 10),
+        ocrc=Register(f"OCR{number}C", base + 12) if has_c else None,
+        timsk=Register(f"TIMSK{number}", 0x6E + number),
+        tifr=Register(f"TIFR{number}", 0x35 + number),
+        capt=by_name[f"TIMER{number}_CAPT_vect"],
+        compa=by_name[f"TIMER{number}_COMPA_vect"],
+        compb=by_name[f"TIMER{number}_COMPB_vect"],
+        compc=by_name[f"TIMER{number}_COMPC_vect"] if has_c else None,
+        ovf=by_name[f"TIMER{number}_OVF_vect"],
+        outputs=tuple((channel, port_bit(name)) for channel, name in outputs.items()),
+        capture_input=port_bit(capture_input),
+    )
+
+
+def header_pins(table: str) -> tuple[Pin, ...]:
+    """
+    Return the pins 0, 1, 2 ... from *table*: a line ``label bit uses`` each.
+
+    Uses are separated by commas: ``D11 PB3 SPI MOSI, PWM OC2A``.
+    """
+    rows = (line.split(maxsplit=2) for line in table.strip().splitlines())
+    return tuple(
+        Pin(row[0], number, port_bit(row[1]), _uses(row[2:])) for number, row in enumerate(rows)
+    )
+
+
+def _uses(column: Sequence[str]) -> tuple[str, ...]:
+    return tuple(use.strip() for text in column for use in text.split(","))

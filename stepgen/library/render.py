@@ -1,0 +1,95 @@
+"""
+From a view to the files of the library, as text.
+"""
+
+from hashlib import sha256
+from importlib.resources import files
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from stepgen.library.text import block, c_comment, c_string, properties_value
+from stepgen.library.view import LibraryView, make_view
+from stepgen.plan.model import Plan
+
+HASH_DIGITS = 12
+
+# Output path -> template; {name} is the library's name.
+_FILES = {
+    "src/{name}.h": "src/library.h.j2",
+    "src/{name}.cpp": "src/library.cpp.j2",
+    "library.properties": "library.properties.j2",
+    "library.json": "library.json.j2",
+    "keywords.txt": "keywords.txt.j2",
+    "README.md": "README.md.j2",
+    "LICENSE": "LICENSE.j2",
+    "examples/Turn/Turn.ino": "examples/Turn.ino.j2",
+}
+
+
+def template_dir() -> Path:
+    """
+    Return the folder of the templates: beside the package in a checkout, inside it in a wheel.
+    """
+    package = Path(str(files("stepgen")))
+    bundled = package / "_templates"
+    return bundled if bundled.is_dir() else package.parent / "templates"
+
+
+def environment(templates: Path | None = None) -> Environment:
+    """
+    Return the one Jinja environment; *templates* replaces the folder that comes with stepgen.
+    """
+    made = Environment(
+        loader=FileSystemLoader(templates or template_dir()),
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        line_statement_prefix="%%",
+        line_comment_prefix="%#",
+        autoescape=False,  # noqa: S701 - C++ is no HTML; text of a spec goes through filters
+    )
+    made.filters.update(
+        block=block, c_comment=c_comment, c_string=c_string, properties_value=properties_value
+    )
+    return made
+
+
+def spec_hash(text: str) -> str:
+    """
+    Return the digits that tell one spec from another in the banner of each file.
+    """
+    return sha256(text.encode()).hexdigest()[:HASH_DIGITS]
+
+
+def render_library(plan: Plan, spec_text: str, templates: Path | None = None) -> dict[str, str]:
+    """
+    Return the files of the library of *plan*, path -> text, in a fixed order.
+
+    The same plan and spec give the same bytes: no date, no path of this machine.
+    """
+    made = environment(templates)
+    view = make_view(plan, spec_hash(spec_text))
+    context = {"library": view, **_partials(made, view)}
+    rendered = {
+        path.format(name=view.name): made.get_template(template).render(context)
+        for path, template in _FILES.items()
+    }
+    rendered["extras/spec.yaml"] = spec_text
+    return dict(sorted(rendered.items()))
+
+
+def _partials(made: Environment, view: LibraryView) -> dict[str, object]:
+    """
+    Return the macros of each kind that *view* uses, by their kind.
+    """
+
+    def modules(folder: str, names: set[str]) -> dict[str, object]:
+        return {name: made.get_template(f"{folder}/{name}.j2").module for name in sorted(names)}
+
+    return {
+        "kernels": modules("kernels", {motor.kernel_name for motor in view.motors}),
+        "timings": modules("timings", {motor.timing_name for motor in view.motors}),
+        "motions": modules("motions", {motor.motion_name for motor in view.motors}),
+    }

@@ -1,0 +1,53 @@
+"""
+The only doors through which text of a spec reaches the output.
+"""
+
+import json
+import re
+from textwrap import indent
+
+
+def c_comment(text: str) -> str:
+    """
+    Return *text* as part of a ``//`` comment: one line that cannot continue on the next.
+    """
+    line = re.sub(r"[\x00-\x1f\x7f]+", " ", text)
+    return line.replace("??/", "?? /").rstrip("\\ ").strip()
+
+
+def c_string(text: str) -> str:
+    """
+    Return *text* as the inside of a C string literal.
+    """
+    return json.dumps(c_comment(text).replace("??", "?\\?"))[1:-1]
+
+
+def properties_value(text: str) -> str:
+    """
+    Return *text* as a value of library.properties: one line.
+    """
+    return re.sub(r"\s+", " ", c_comment(text))
+
+
+def block(text: str, width: int = 0) -> str:
+    """
+    Return *text* indented by *width* spaces, without the line end that follows its last line.
+    """
+    return indent(text.rstrip("\n"), " " * width)
+
+
+def hexadecimal(value: int) -> str:
+    """
+    Return *value*, 0 to 255, the way registers are written: ``0x0F``.
+    """
+    return f"0x{value:02X}"
+
+
+def frequency(hertz: int) -> str:
+    """
+    Return *hertz* as people say it: ``16 MHz``, ``128 kHz``.
+    """
+    for unit, size in (("MHz", 1_000_000), ("kHz", 1_000)):
+        if hertz >= size and hertz * 1_000 % size == 0:
+            return f"{hertz / size:g} {unit}"
+    return f"{hertz} Hz"

@@ -1,0 +1,3 @@
+"""
+What stepgen decides: timer settings, phase tables, kernels, storage, and conflicts.
+"""

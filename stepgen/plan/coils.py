@@ -1,0 +1,105 @@
+"""
+Coil drives: wires, phase tables, and the order in which ports are written.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from stepgen.devices import Pin, Port
+
+Pattern = tuple[bool, ...]
+
+FULL_STEPS_PER_CYCLE = 4  # a two-phase motor repeats its coil currents after four full steps
+
+
+@dataclass(frozen=True)
+class Wire:
+    """
+    One signal of a drive: what it is called there, and the pin that carries it.
+    """
+
+    signal: str
+    pin: Pin
+
+
+@dataclass(frozen=True)
+class CoilDrive:
+    """
+    How a motor's coils are connected and what they see in each phase.
+
+    Args:
+        kind: The spec's name of the drive.
+        title: What the driver is called in prose.
+        sequence: The spec's name of the sequence, or ``table``.
+        wires: The wires that change from phase to phase, in the order of the patterns.
+        phases: What the wires show in each phase; a step forward goes to the next.
+        enables: Wires that are HIGH while the motor is driven, LOW when it is released.
+        quiet: Wires that stay LOW for ever.
+        released: The wires, of either kind, that go LOW when the coils are switched off.
+    """
+
+    kind: str
+    title: str
+    sequence: str
+    wires: tuple[Wire, ...]
+    phases: tuple[Pattern, ...]
+    enables: tuple[Wire, ...]
+    quiet: tuple[Wire, ...]
+    released: tuple[Wire, ...]
+
+    @property
+    def every_wire(self) -> tuple[Wire, ...]:
+        """
+        Return all wires, each once: those that step, the enables and the quiet ones.
+        """
+        return (*self.wires, *self.enables, *self.quiet)
+
+    @property
+    def steps_per_full_step(self) -> Fraction:
+        """
+        Return how many steps of this sequence make one full step of the motor.
+        """
+        return Fraction(len(self.phases), FULL_STEPS_PER_CYCLE)
+
+
+@dataclass(frozen=True)
+class PortPatterns:
+    """
+    The part of a drive that lies on one port: its bits, and their value in each phase.
+    """
+
+    port: Port
+    mask: int
+    values: tuple[int, ...]
+
+
+def bits_by_port(wires: tuple[Wire, ...]) -> dict[str, int]:
+    """
+    Return the mask of *wires* on each port that they use, by the port's letter.
+    """
+    masks: dict[str, int] = {}
+    for wire in wires:
+        bit = wire.pin.bit
+        masks[bit.port] = masks.get(bit.port, 0) | 1 << bit.bit
+    return dict(sorted(masks.items()))
+
+
+def patterns_by_port(drive: CoilDrive, ports: tuple[Port, ...]) -> tuple[PortPatterns, ...]:
+    """
+    Return each port's share of *drive*, in the order in which the ports are written.
+
+    On several ports a step is one write per port to switch off what the next phase does not
+    drive, and one to switch on what it does. The last port needs just one write for both, so
+    the port with the most wires comes last: two wires that trade places there do so at once.
+    """
+    by_letter = {port.letter: port for port in ports}
+    shares = [
+        PortPatterns(by_letter[letter], mask, tuple(_value(drive, letter, p) for p in drive.phases))
+        for letter, mask in bits_by_port(drive.wires).items()
+    ]
+    return tuple(sorted(shares, key=lambda share: (share.mask.bit_count(), share.port.letter)))
+
+
+def _value(drive: CoilDrive, letter: str, pattern: Pattern) -> int:
+    high = (wire.pin.bit for wire, on in zip(drive.wires, pattern, strict=True) if on)
+    return sum(1 << bit.bit for bit in high if bit.port == letter)

@@ -1,0 +1,19 @@
+"""
+What the planner knows of each drive: one module per kind, named like it.
+"""
+
+from importlib import import_module
+
+from stepgen.devices import Board
+from stepgen.plan.coils import CoilDrive
+from stepgen.plan.faults import Faults
+from stepgen.spec.base import KindModel
+
+
+def plan_drive(spec: KindModel, board: Board, faults: Faults) -> CoilDrive | None:
+    """
+    Return the drive that *spec* asks for on *board*, or None after reporting why it cannot be.
+    """
+    module = import_module(f"{__name__}.{spec.kind.replace('-', '_')}")
+    drive: CoilDrive | None = module.plan(spec, board, faults)
+    return drive

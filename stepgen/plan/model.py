@@ -1,0 +1,120 @@
+"""
+The plan: every number decided, nothing left for the templates to work out.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from stepgen.devices import Board, Timer16
+from stepgen.plan.coils import CoilDrive
+from stepgen.plan.isr import HotPath, Storage
+from stepgen.plan.kernels import Kernel
+from stepgen.spec import Library
+
+_RETIME_CYCLES = 60  # of the boundary handler until it starts the clock; both compilers
+_THINKING_CYCLES = 45  # more, when it reads the clock and makes the step itself
+
+
+@dataclass(frozen=True)
+class Setting:
+    """
+    A timer's prescaler and TOP; it overflows each prescaler * (TOP + 1) I/O clocks.
+    """
+
+    prescaler: int
+    top: int
+
+    @property
+    def period_cycles(self) -> int:
+        """
+        Return the I/O clocks between two overflows.
+        """
+        return self.prescaler * (self.top + 1)
+
+
+@dataclass(frozen=True)
+class TimerPlan:
+    """
+    The timer that paces a motor, and the interrupt vector that makes its steps.
+    """
+
+    kind: str
+    timer: Timer16
+    vector: str
+
+
+@dataclass(frozen=True)
+class MotorPlan:
+    """
+    Everything decided about one motor.
+
+    Args:
+        name: Its name in the spec: the prefix of its functions.
+        motion: The kind of its motion.
+        drive: How its coils are connected and what they see.
+        kernel: How one step changes the ports.
+        timing: What paces it.
+        storage: Where its step interrupt keeps its state.
+        handler: Where the step interrupt goes on in its rare ways, by the linker's name.
+        hot_path: The step interrupt.
+        steps_per_turn: Steps of its sequence in one turn of the shaft, or None.
+        releases_at_rest: Whether the coils go off when it comes to rest.
+        owns_ports: Whether the sketch leaves the motor's ports alone.
+    """
+
+    name: str
+    motion: str
+    drive: CoilDrive
+    kernel: Kernel
+    timing: TimerPlan
+    storage: Storage
+    handler: str
+    hot_path: HotPath
+    steps_per_turn: Fraction | None
+    releases_at_rest: bool
+    owns_ports: bool
+
+    @property
+    def elapsed_cycles(self) -> int:
+        """
+        Return the cycles from a due step until the boundary handler has set the timer anew.
+        """
+        return self.hot_path.boundary_entry_cycles + _RETIME_CYCLES
+
+    @property
+    def elapsed_thinking_cycles(self) -> int:
+        """
+        Return the same where the handler itself made the step, because of a millisecond limit.
+        """
+        return self.hot_path.think_entry_cycles + _THINKING_CYCLES + _RETIME_CYCLES
+
+    @property
+    def port_letters(self) -> str:
+        """
+        Return the ports of the stepping wires, such as ``B`` or ``B and D``.
+        """
+        return " and ".join(sorted({wire.pin.bit.port for wire in self.drive.wires}))
+
+
+@dataclass(frozen=True)
+class Plan:
+    """
+    A spec with every number decided and every conflict found.
+
+    Args:
+        library: The metadata of the library.
+        board: The board.
+        motors: Its motors, in the order of the spec.
+        isr_bound_cycles: Longest step interrupt of any motor, response to RETI.
+        minimum_period_cycles: Shortest time between two steps that any motor may be given.
+        largest_period_cycles: Longest time between two steps.
+        uses: The other libraries of the sketch.
+    """
+
+    library: Library
+    board: Board
+    motors: tuple[MotorPlan, ...]
+    isr_bound_cycles: int
+    minimum_period_cycles: int
+    largest_period_cycles: int
+    uses: tuple[str, ...]

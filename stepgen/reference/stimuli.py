@@ -1,0 +1,136 @@
+"""
+What happens to a motor, and what it then does: the input and the output of the model.
+
+Cycles are CPU cycles since reset, absolute. In a list of stimuli, those of one cycle are in
+their order of effect, a `MillisTick` before a call that reads it.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from stepgen.reference.contract import ALL_CONTROL_BITS
+from stepgen.reference.sequences import Pattern
+from stepgen.reference.timer import COUNTER_STATES, PRESCALERS
+
+UINT32_STATES = 1 << 32
+
+
+@dataclass(frozen=True)
+class SetSpeed:
+    """
+    A call of ``motorSetSpeed`` at its commit: the moment it masks the interrupts.
+
+    Args:
+        cycle: The commit; a step interrupt that is served later belongs to this call.
+        control: Control bits, 0 to 255.
+        virtual_cycles: I/O clocks between two steps, 32 bits; 0 stops.
+        limit: Steps, or milliseconds with ENDPOINT_MILLIS, 32 bits; 0 = endless.
+    """
+
+    cycle: int
+    control: int
+    virtual_cycles: int
+    limit: int = 0
+
+    def __post_init__(self) -> None:
+        _need("control", self.control, ALL_CONTROL_BITS + 1)
+        _need("virtual_cycles", self.virtual_cycles, UINT32_STATES)
+        _need("limit", self.limit, UINT32_STATES)
+
+
+@dataclass(frozen=True)
+class ClockOn:
+    """
+    The clock select of the step timer was written, with *tcnt* in the counter.
+    """
+
+    cycle: int
+    prescaler: int
+    tcnt: int
+
+    def __post_init__(self) -> None:
+        _need("tcnt", self.tcnt, COUNTER_STATES)
+        if self.prescaler not in PRESCALERS:
+            raise ValueError(f"prescaler {self.prescaler} is none of {PRESCALERS}")
+
+
+@dataclass(frozen=True)
+class MillisTick:
+    """
+    From this cycle on ``millis()`` returns *millis*, 32 bits.
+    """
+
+    cycle: int
+    millis: int
+
+    def __post_init__(self) -> None:
+        _need("millis", self.millis, UINT32_STATES)
+
+
+@dataclass(frozen=True)
+class Hold:
+    """
+    A call of ``motorHold``, at the moment it masks the interrupts.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class Release:
+    """
+    A call of ``motorRelease``, at the moment it masks the interrupts.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class Init:
+    """
+    A call of ``...ShieldInit``.
+    """
+
+    cycle: int
+
+
+Call = SetSpeed | Hold | Release | Init
+Stimulus = Call | ClockOn | MillisTick
+
+
+class EdgeKind(StrEnum):
+    """
+    Why the wires are written.
+    """
+
+    STEP = "step"
+    ENERGISE = "energise"
+    COILS_OFF = "coils-off"
+
+
+@dataclass(frozen=True)
+class Edge:
+    """
+    One write of the wires.
+
+    Every step is an edge, also where an own table repeats a pattern; the coils going on or off
+    is one only where it changes their state.
+
+    Args:
+        deadline_cycle: When the timer sets TOV, or the commit of the call that causes it.
+        pattern: What the wires show from then on.
+        position: The position from then on.
+        kind: Why they are written.
+        call_index: Which call it belongs to: an index into the return codes.
+    """
+
+    deadline_cycle: int
+    pattern: Pattern
+    position: int
+    kind: EdgeKind
+    call_index: int
+
+
+def _need(name: str, value: int, states: int) -> None:
+    if not 0 <= value < states:
+        raise ValueError(f"{name} = {value} is not within 0 to {states - 1}")

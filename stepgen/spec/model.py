@@ -1,0 +1,130 @@
+"""
+The spec: a board, its motors and the library's metadata, each with its local rules.
+"""
+
+import re
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field, StringConstraints, model_validator
+
+from stepgen.spec.base import SpecModel
+from stepgen.spec.drives import Drive
+from stepgen.spec.motions import Motion
+from stepgen.spec.timings import Timing
+from stepgen.spec.turns import Steps
+
+_LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
+_MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
+_SHORT_FORMS = {"timer": "timing", "pins": "drive", "sequence": "drive"}
+_DEFAULT_KINDS = {"timing": "fast-pwm", "motion": "constant"}
+_CATEGORIES = Literal[
+    "Display",
+    "Communication",
+    "Signal Input/Output",
+    "Sensors",
+    "Device Control",
+    "Timing",
+    "Data Storage",
+    "Data Processing",
+    "Other",
+]
+
+Line = Annotated[str, StringConstraints(strip_whitespace=True, pattern=r"^[^\x00-\x1f\x7f]*$")]
+"""One line of text: no control characters, so that it cannot end a comment or a property."""
+
+Version = Annotated[str, StringConstraints(pattern=r"^\d+\.\d+\.\d+$")]
+
+
+class Library(SpecModel):
+    """
+    The metadata of the library that is written: what library.properties says.
+    """
+
+    name: str
+    version: Version = "1.0.0"
+    author: Line = "unknown"
+    maintainer: Line | None = None
+    sentence: Line | None = None
+    paragraph: Line | None = None
+    url: Line = ""
+    category: _CATEGORIES = "Device Control"
+
+    @model_validator(mode="after")
+    def _name_is_a_file_name(self) -> Self:
+        if not _LIBRARY_NAME.fullmatch(self.name):
+            raise ValueError(
+                f'"{self.name[:80]}" names no library: it becomes a folder and a header, so use '
+                "a letter followed by at most 62 letters, digits or underscores"
+            )
+        return self
+
+
+def _as_library(value: Any) -> Any:  # noqa: ANN401 - whatever the YAML held
+    return {"name": value} if isinstance(value, str) else value
+
+
+def _long_form(value: Any) -> Any:  # noqa: ANN401 - whatever the YAML held
+    """
+    Move the short forms ``timer``, ``pins`` and ``sequence`` to where they belong.
+    """
+    if not isinstance(value, dict):
+        return value
+    long = dict(value)
+    for short, part in _SHORT_FORMS.items():
+        if short not in long:
+            continue
+        inner = long.get(part, _DEFAULT_KINDS.get(part))
+        inner = {"kind": inner} if isinstance(inner, str) else inner
+        if not isinstance(inner, dict):
+            continue
+        if short in inner:
+            raise ValueError(f"{short} is given twice, here and in {part}; remove one of them")
+        long[part] = {**inner, short: long.pop(short)}
+    for part, kind in _DEFAULT_KINDS.items():
+        inner = long.get(part)
+        if isinstance(inner, dict) and "kind" not in inner:
+            long[part] = {"kind": kind, **inner}
+    return long
+
+
+class Motor(SpecModel):
+    """
+    One motor: how it is driven, what paces it, how it moves and what it does at rest.
+    """
+
+    drive: Drive
+    timing: Timing = Field(default="fast-pwm", validate_default=True)
+    motion: Motion = Field(default="constant", validate_default=True)
+    steps_per_turn: Steps | None = None
+    at_rest: Literal["hold", "release"] = "release"
+    port: Literal["shared", "owned"] = "shared"
+
+
+MotorEntry = Annotated[Motor, BeforeValidator(_long_form)]
+
+
+class Spec(SpecModel):
+    """
+    Everything that decides a library.
+    """
+
+    library: Annotated[Library, BeforeValidator(_as_library)]
+    board: str
+    motors: Annotated[dict[str, MotorEntry], Field(min_length=1)]
+    uses: Annotated[tuple[str, ...], Field(strict=False)] = ()
+
+    @model_validator(mode="after")
+    def _motor_names_make_function_names(self) -> Self:
+        for name in self.motors:
+            if not _MOTOR_NAME.fullmatch(name):
+                raise ValueError(
+                    f'"{name[:80]}" names no motor: it begins each of its functions, so use a '
+                    "lower-case letter followed by at most 30 letters or digits, such as pan"
+                )
+        lower = [name.lower() for name in self.motors]
+        if len(set(lower)) < len(lower):
+            raise ValueError(
+                "two motors have names that differ in case only; their constants would collide, "
+                "so rename one of them"
+            )
+        return self

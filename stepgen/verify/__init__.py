@@ -1,0 +1,3 @@
+"""
+Proof before flashing: compiles with the real core, simulates, compares with the model.
+"""

@@ -1,0 +1,248 @@
+#include "harness.h"
+
+#include <simavr/avr_ioport.h>
+#include <simavr/sim_core.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "machine.h"
+
+enum { SE = 1, SM = 0x0E };
+static const avr_cycle_count_t UNLIMITED = 1000000;
+
+static void log_to_machine(avr_t *avr, const int level, const char *format, va_list arguments)
+{
+    machine *m = avr ? avr->custom.data : NULL;
+    if (!m || level > LOG_ERROR || m->error[0])
+        return;
+    vsnprintf(m->error, sizeof m->error, format, arguments);
+    m->stop = 1;
+}
+
+void machine_fail(machine *m, const char *format, ...)
+{
+    va_list arguments;
+    if (m->error[0])
+        return;
+    va_start(arguments, format);
+    vsnprintf(m->error, sizeof m->error, format, arguments);
+    va_end(arguments);
+    m->stop = 1;
+    m->avr->run_cycle_count = 1;
+}
+
+event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source, uint32_t value)
+{
+    event *e = recorder_add(&m->recorder, kind, cycle, source, value);
+    if (!e)
+        machine_fail(m, "too many events: call clear_events() now and then");
+    return e;
+}
+
+void machine_attend(machine *m)
+{
+    if (m->avr->sreg[S_I] && !m->avr->interrupt_state)
+        m->avr->interrupt_state = 1;
+}
+
+static void no_sleep(avr_t *avr, avr_cycle_count_t cycles)
+{
+    (void)avr, (void)cycles;
+}
+
+machine *machine_new(const char *mcu, uint32_t f_cpu_hz, const uint8_t *code, uint32_t size)
+{
+    avr_global_logger_set(log_to_machine);
+    const mcu_facts *facts = mcu_find(mcu);
+    avr_t *avr = facts ? avr_make_mcu_by_name(mcu) : NULL;
+    machine *m = avr ? calloc(1, sizeof *m) : NULL;
+    if (!m)
+        return NULL;
+    m->avr = avr;
+    m->facts = facts;
+    m->wanted_mark = -1;
+    avr->custom.data = m;
+    avr_init(avr);
+    avr->frequency = f_cpu_hz;
+    avr->sleep = no_sleep;
+    if (size > avr->flashend + 1)
+        machine_fail(m, "the program has %u bytes, the flash %u", size, avr->flashend + 1);
+    else
+        avr_loadcode(avr, (uint8_t *)code, size, 0);
+    avr->codeend = size;
+    m->lowest = m->lowest_ever = avr->ramend;
+    interrupts_install(m);
+    registers_install(m);
+    serial_install(m);
+    return m;
+}
+
+void machine_free(machine *m)
+{
+    avr_terminate(m->avr);
+    free(m->avr);
+    free(m->serial);
+    free(m);
+}
+
+const char *machine_error(const machine *m)
+{
+    return m->error;
+}
+
+int machine_watch(machine *m, uint16_t address)
+{
+    if (address < 32 || address >= MAX_IOs + 32 || address > m->avr->ioend)
+        return 0;
+    registers_hook(m, address);
+    m->slots[AVR_DATA_TO_IO(address)].watched = 1;
+    return 1;
+}
+
+static avr_cycle_count_t on_until(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    (void)avr, (void)when;
+    ((machine *)param)->stop = 1;
+    return 0;
+}
+
+/* SLEEP does nothing without SE; only idle, where the timers go on, is simulated. */
+static void check_sleep(machine *m)
+{
+    uint8_t control = m->avr->data[ADDRESS_SMCR];
+    if (!(control & SE))
+        m->avr->state = cpu_Running;
+    else if (control & SM)
+        machine_fail(m, "a sleep mode other than idle is not simulated");
+    else if (!m->avr->sreg[S_I])
+        machine_fail(m, "asleep with interrupts off, for ever");
+    else
+        m->asleep = 1;
+}
+
+static void note_masking(machine *m, uint64_t cycle)
+{
+    int enabled = m->avr->sreg[S_I];
+    if (m->depth || enabled == m->was_enabled)
+        return;
+    machine_record(m, enabled ? EVENT_UNMASKED : EVENT_MASKED, cycle, 0, 0);
+    m->was_enabled = enabled;
+}
+
+/* One round: instructions up to the next event, then what is due between instructions. */
+static avr_cycle_count_t round_of(machine *m, avr_cycle_count_t wait)
+{
+    avr_t *avr = m->avr;
+    if (m->asleep)
+        avr->cycle += wait ? wait : 1;
+    else
+        avr->pc = avr_run_one(avr);
+    if (avr->state == cpu_Sleeping && !m->asleep)
+        check_sleep(m);
+    else if (m->asleep)
+        avr->state = cpu_Sleeping;
+    else if (avr->state != cpu_Running)
+        machine_fail(m, "simavr stopped in state %d", avr->state);
+    if (m->fine)
+        note_masking(m, avr->cycle);
+    avr_cycle_timer_process(avr);
+    interrupts_service(m);
+    return avr_cycle_timer_process(avr);
+}
+
+int machine_run(machine *m, uint64_t until, int wanted_mark)
+{
+    avr_t *avr = m->avr;
+    if (m->error[0])
+        return RUN_FAILED;
+    m->stop = until <= avr->cycle;
+    m->marked = 0;
+    m->wanted_mark = wanted_mark;
+    m->was_enabled = avr->sreg[S_I];
+    avr->run_cycle_limit = m->fine ? 1 : UNLIMITED;
+    if (!m->stop)
+        avr_cycle_timer_register(avr, until - avr->cycle, on_until, m);
+    avr_cycle_count_t wait = avr_cycle_timer_process(avr);
+    while (!m->stop)
+        wait = round_of(m, wait);
+    avr_cycle_timer_cancel(avr, on_until, m);
+    return m->error[0] ? RUN_FAILED : m->marked ? RUN_MARKED : RUN_REACHED;
+}
+
+uint64_t machine_cycle(const machine *m)
+{
+    return m->avr->cycle;
+}
+
+uint32_t machine_pc(const machine *m)
+{
+    return m->avr->pc;
+}
+
+void machine_set_fine(machine *m, int on)
+{
+    m->fine = on;
+}
+
+uint32_t machine_ram_end(const machine *m)
+{
+    return m->avr->ramend;
+}
+
+uint8_t *machine_data(machine *m)
+{
+    return m->avr->data;
+}
+
+uint8_t machine_register(machine *m, uint16_t address)
+{
+    avr_t *avr = m->avr;
+    if (address == ADDRESS_SREG)
+        READ_SREG_INTO(avr, avr->data[ADDRESS_SREG]);
+    slot *s = address >= 32 && address < MAX_IOs + 32 ? &m->slots[AVR_DATA_TO_IO(address)] : NULL;
+    if (s && s->role == ROLE_TIMER)
+        return timer16_peek(s->timer, address, avr->cycle);
+    if (s && s->role == ROLE_PIN) {
+        uint8_t out = avr->data[address + 1];
+        return (uint8_t)((avr->data[address] & ~out) | (avr->data[address + 2] & out));
+    }
+    return avr->data[address];
+}
+
+int machine_drive_pin(machine *m, uint16_t pin_address, int bit, int level)
+{
+    for (unsigned i = 0; m->facts->ports[i]; i++) {
+        if (m->facts->pin_address[i] != pin_address)
+            continue;
+        uint32_t port = AVR_IOCTL_IOPORT_GETIRQ(m->facts->ports[i]);
+        avr_raise_irq(avr_io_getirq(m->avr, port, bit), (uint32_t)level);
+        return 1;
+    }
+    return 0;
+}
+
+uint32_t machine_isr_stack(const machine *m, int vector)
+{
+    return m->isr_stack[vector & (MAX_VECTORS - 1)];
+}
+
+uint32_t machine_stack_deepest(const machine *m)
+{
+    return (uint32_t)(m->avr->ramend - m->lowest_ever);
+}
+
+event *events_map(machine *m)
+{
+    return m->recorder.events = recorder_map();
+}
+
+uint64_t events_count(const machine *m)
+{
+    return m->recorder.count;
+}
+
+void events_clear(machine *m)
+{
+    m->recorder.count = 0;
+}

@@ -1,0 +1,103 @@
+/* The inside of a machine, shared by the harness's own files. */
+
+#ifndef STEPGEN_MACHINE_H
+#define STEPGEN_MACHINE_H
+
+#include <simavr/avr_uart.h>
+#include <simavr/sim_avr.h>
+
+#include "harness.h"
+#include "mcus.h"
+#include "recorder.h"
+#include "timer16.h"
+
+enum { MAX_VECTORS = 64, MAX_DEPTH = 64, MAX_ERROR = 400 };
+
+/* What a write to an I/O register means beside storing the byte. */
+typedef enum {
+    ROLE_PLAIN,
+    ROLE_PIN,    /* writing ones toggles PORTx; sbi toggles its one bit */
+    ROLE_DDR,
+    ROLE_PORT,
+    ROLE_FLAGS,  /* writing ones clears; sbi clears its one bit */
+    ROLE_TIMER,  /* a register of a timer16 */
+    ROLE_SPL,
+    ROLE_SPH,
+    ROLE_MARK,
+    ROLE_PRESCALER,
+    ROLE_DATA,   /* UDR0 */
+} role;
+
+typedef struct {
+    struct machine *owner;
+    role role;
+    uint8_t watched;   /* record writes */
+    uint8_t enables;   /* holds interrupt enable bits */
+    timer16 *timer;
+    avr_io_write_t write;  /* simavr's own handlers, or NULL */
+    void *write_param;
+} slot;
+
+typedef struct {
+    uint8_t vector;
+    uint16_t stack_before;  /* SP before the return address was pushed */
+    uint16_t lowest_before; /* lowest SP of the interrupted level so far */
+    uint64_t entered;
+} frame;
+
+struct machine {
+    avr_t *avr;
+    const mcu_facts *facts;
+    recorder recorder;
+    slot slots[MAX_IOs];
+    timer16 timers[4];
+    uint64_t prescaler_origin;  /* the shared prescaler was zero at this edge */
+
+    avr_int_vector_t *vectors[MAX_VECTORS];  /* by priority */
+    uint8_t vector_count;
+    uint64_t raised_at[MAX_VECTORS];
+    uint64_t enabled_at[MAX_VECTORS];
+    uint64_t unmasked_at;  /* the I flag was set last */
+
+    frame frames[MAX_DEPTH];
+    uint8_t depth;
+    uint8_t entering;
+    uint8_t asleep;  /* until an interrupt is taken; simavr itself wakes too early */
+    uint16_t lowest, lowest_ever;  /* SP; lowest is of the current level */
+    uint32_t isr_stack[MAX_VECTORS];
+
+    avr_uart_t *uart;
+    uint64_t shifting_until;  /* the transmitter's shift register is busy */
+    uint8_t buffered;         /* and another byte waits */
+    uint8_t *serial;
+    uint32_t serial_size, serial_next, serial_lost;
+
+    int stop, wanted_mark, marked;
+    int fine, was_enabled;
+    char error[MAX_ERROR];
+};
+
+/* Record an event; a full recorder fails the machine. */
+event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source, uint32_t value);
+
+/* Stop the run with an error, once: the first one counts. */
+void machine_fail(machine *m, const char *format, ...);
+
+/* An interrupt may have become pending: look after the current instruction. */
+void machine_attend(machine *m);
+
+/* interrupts.c: what happens between two instructions, and at RETI. */
+void interrupts_install(machine *m);
+void interrupts_service(machine *m);
+
+/* registers.c: the write hooks. */
+void registers_install(machine *m);
+void registers_hook(machine *m, uint16_t address);
+uint64_t registers_write_edge(const avr_t *avr);
+uint64_t registers_read_edge(const avr_t *avr);
+
+/* serial.c */
+void serial_install(machine *m);
+void serial_transmit(machine *m, uint8_t value, uint64_t edge);
+
+#endif

@@ -1,0 +1,45 @@
+/* Facts of the simulated chips, from avr-libc's iom328p.h and iomxx0_1.h. */
+
+#ifndef STEPGEN_MCUS_H
+#define STEPGEN_MCUS_H
+
+#include <stdint.h>
+
+/* Bits of TIFRn and TIMSKn, the same in every 16-bit timer; ICFn is bit 5. */
+enum { FLAG_TOV = 0, FLAG_OCA = 1, FLAG_OCB = 2, FLAG_OCC = 3, FLAG_ICF = 5, FLAG_BITS = 6 };
+
+typedef struct {
+    char name;                  /* '1', as simavr names its timer */
+    uint16_t base;              /* data address of TCCRnA; the others follow at fixed offsets */
+    uint16_t timsk, tifr;
+    uint8_t channels;           /* compare units: 2 (A, B) or 3 (A, B, C) */
+    uint8_t vector[FLAG_BITS];  /* by flag bit */
+} timer16_facts;
+
+typedef struct {
+    const char *name;
+    const char *ports;          /* letters */
+    uint16_t pin_address[12];   /* PINx by letter; DDRx and PORTx are the next two addresses */
+    uint8_t timer_count;
+    timer16_facts timers[4];
+} mcu_facts;
+
+/* The same address on each of them. */
+enum {
+    ADDRESS_EEDR = 0x40,
+    ADDRESS_GTCCR = 0x43,
+    ADDRESS_SMCR = 0x53,
+    ADDRESS_SPL = 0x5D,
+    ADDRESS_SPH = 0x5E,
+    ADDRESS_SREG = 0x5F,
+    ADDRESS_UCSR0A = 0xC0,
+    ADDRESS_UCSR0B = 0xC1,
+    ADDRESS_UCSR0C = 0xC2,
+    ADDRESS_UBRR0L = 0xC4,
+    ADDRESS_UDR0 = 0xC6,
+};
+
+/* The facts of *name*, or NULL for a chip that the harness does not know. */
+const mcu_facts *mcu_find(const char *name);
+
+#endif

@@ -1,0 +1,116 @@
+/* USART0's line: bytes out are recorded, bytes in arrive one per byte time. simavr's own
+ * pacing has a bit too many and no transmit buffer, and is not used. */
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "machine.h"
+
+DEFINE_FIFO(uint16_t, uart_fifo);
+
+enum { RETRY_CYCLES = 1000, RECEIVER_BYTES = 3, RXEN = 1 << 4, TXEN = 1 << 3, U2X = 1 << 1 };
+
+/* Cycles of a frame: start, data, parity and stop bits. simavr always counts a parity bit. */
+static uint64_t byte_cycles(const avr_t *avr)
+{
+    const uint8_t *data = avr->data;
+    uint8_t format = data[ADDRESS_UCSR0C];
+    unsigned ubrr = data[ADDRESS_UBRR0L] | (data[ADDRESS_UBRR0L + 1] & 0x0Fu) << 8;
+    unsigned parity = format & 0x20 ? 1 : 0, stop = format & 0x08 ? 2 : 1;
+    unsigned bits = 1 + 5 + (format >> 1 & 3) + parity + stop;
+    return (uint64_t)bits * (data[ADDRESS_UCSR0A] & U2X ? 8 : 16) * (ubrr + 1);
+}
+
+/* The shift register is empty: the buffered byte follows, or the line falls silent. */
+static avr_cycle_count_t on_shifted(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    machine *m = param;
+    avr_int_vector_t *done = m->buffered ? &m->uart->udrc : &m->uart->txc;
+    done->pending = 0;
+    avr_raise_interrupt(avr, done);
+    if (!m->buffered)
+        return 0;
+    m->buffered = 0;
+    m->shifting_until = when + byte_cycles(avr);
+    return m->shifting_until;
+}
+
+/* A byte for UDR0. It goes into the shift register at once, or waits in the buffer while
+ * that is busy; UDRE is clear only then. simavr has no such buffer. */
+void serial_transmit(machine *m, uint8_t value, uint64_t edge)
+{
+    avr_t *avr = m->avr;
+    if (!m->uart || !(avr->data[ADDRESS_UCSR0B] & TXEN) || m->buffered)
+        return; /* a write to a full buffer is ignored */
+    machine_record(m, EVENT_UART, edge, ADDRESS_UDR0, value);
+    if (edge < m->shifting_until) {
+        m->buffered = 1;
+        avr_regbit_clear(avr, m->uart->udrc.raised);
+        return;
+    }
+    m->shifting_until = edge + byte_cycles(avr);
+    avr_cycle_timer_register(avr, m->shifting_until - avr->cycle, on_shifted, m);
+}
+
+/* A byte is complete. The receiver holds two and a third in its shift register; one more
+ * is lost. While the receiver is off the line waits. */
+static avr_cycle_count_t on_byte_time(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    machine *m = param;
+    if (m->serial_next == m->serial_size)
+        return 0;
+    if (!(avr->data[ADDRESS_UCSR0B] & RXEN))
+        return when + RETRY_CYCLES;
+    if (uart_fifo_get_read_size(&m->uart->input) < RECEIVER_BYTES)
+        uart_fifo_write(&m->uart->input, m->serial[m->serial_next]);
+    else
+        m->serial_lost++;
+    m->serial_next++;
+    m->uart->rx_cnt = 0;
+    m->uart->rxc_raise_time = when;
+    avr_raise_interrupt(avr, &m->uart->rxc);
+    return when + byte_cycles(avr);
+}
+
+void machine_send_serial(machine *m, const uint8_t *bytes, uint32_t size)
+{
+    uint32_t waiting = m->serial_size - m->serial_next;
+    uint8_t *line = malloc(waiting + size + 1u);
+    if (!m->uart || !line) {
+        free(line);
+        machine_fail(m, "no USART0, or no memory for its input");
+        return;
+    }
+    if (waiting)
+        memcpy(line, m->serial + m->serial_next, waiting);
+    memcpy(line + waiting, bytes, size);
+    free(m->serial);
+    m->serial = line;
+    m->serial_next = 0;
+    m->serial_size = waiting + size;
+    if (!avr_cycle_timer_status(m->avr, on_byte_time, m))
+        avr_cycle_timer_register(m->avr, 1, on_byte_time, m);
+}
+
+uint32_t machine_serial_lost(const machine *m)
+{
+    return m->serial_lost;
+}
+
+uint32_t machine_serial_waiting(const machine *m)
+{
+    return m->serial_size - m->serial_next;
+}
+
+void serial_install(machine *m)
+{
+    m->avr->data[ADDRESS_UCSR0C] = 0x06; /* 8 data bits; simavr forgets this initial value */
+    for (avr_io_t *io = m->avr->io_port; io; io = io->next) {
+        if (strcmp(io->kind, "uart"))
+            continue;
+        avr_uart_t *uart = (avr_uart_t *)io;
+        uart->flags = 0; /* neither print nor sleep in real time */
+        if (uart->name == '0')
+            m->uart = uart;
+    }
+}

@@ -1,0 +1,77 @@
+/* The 16-bit timers of the ATmega328P and ATmega2560, from the chapter "16-bit
+ * Timer/Counter with PWM" of their datasheets. They replace simavr's, which differ from
+ * the chip in double buffering, prescaler phase, ICRn as TOP and missed compares.
+ *
+ * Time. A register holds a value from one CPU clock edge to the next; edge c starts CPU
+ * cycle c. An instruction of n cycles that starts at c writes at edge c + n and reads what
+ * the register holds in its last cycle, c + n - 1. The timer clock ticks at the edges
+ * that are multiples of the prescaler since reset, whatever the timer does (the prescaler
+ * is shared and runs freely; GTCCR.PSRSYNC restarts it).
+ *
+ * At a tick the counter leaves its value for the next one, and flags whose condition was
+ * that value are set at this same edge: OCFnx at the edge where TCNTn goes from OCRnx to
+ * OCRnx + 1, TOVn where it goes from MAX (normal, CTC) or TOP (fast PWM) to 0. The CPU
+ * sees a flag at the first instruction boundary at or after the edge. So the period of
+ * CTC and fast PWM is exactly prescaler * (TOP + 1) cycles.
+ *
+ * A write wins over the tick of its own edge: the count is the value written, and goes on
+ * at the next tick. A TIFRn bit cleared at the edge that sets it is clear.
+ *
+ * TCNTn written: the compare units see no match until the next tick has passed, TOP by
+ * OCRnA included; TOP by ICRn is no compare unit and is not blocked.
+ *
+ * OCRnx: the CPU reads and writes a buffer. In normal and CTC modes the compare unit
+ * takes a write at once; in fast PWM it takes the buffer when the counter itself goes
+ * to BOTTOM (a TCNTn = 0 by the CPU does not count).
+ *
+ * Left out: compare outputs (OCnx pins, FOCnx), input capture, external clocks, PRR. Phase
+ * correct modes count as they should, but set TOVn when leaving BOTTOM. */
+
+#ifndef STEPGEN_TIMER16_H
+#define STEPGEN_TIMER16_H
+
+#include <stdint.h>
+
+#include "mcus.h"
+
+struct machine;
+
+typedef struct {
+    struct machine *owner;
+    const timer16_facts *facts;
+    uint8_t control_a, control_b;
+    uint8_t temp;         /* the one TEMP byte of the timer */
+    uint8_t down;         /* counting down (phase correct modes) */
+    uint8_t blocked;      /* TCNTn written, no tick since */
+    uint16_t count;       /* TCNTn after all ticks up to and including edge synced */
+    uint16_t capture;     /* ICRn */
+    uint16_t active[3];   /* what the compare units use */
+    uint16_t buffer[3];   /* what the CPU wrote last */
+    uint64_t synced;
+} timer16;
+
+/* Take the registers of *t* over from simavr. */
+void timer16_install(timer16 *t, struct machine *owner, const timer16_facts *facts);
+
+/* Let the counter run up to and including the tick at *edge*, if there is one. */
+void timer16_sync(timer16 *t, uint64_t edge);
+
+/* Tell simavr when the next interrupt may come; after each change. */
+void timer16_schedule(timer16 *t);
+
+/* Its mode: ICRn is TOP; OCRnx are double buffered; it counts up and down. */
+int timer16_top_is_icr(const timer16 *t);
+int timer16_is_buffered(const timer16 *t);
+int timer16_turns(const timer16 *t);
+
+/* A write that takes effect at *edge*, a read during the cycle that starts at *edge*. */
+void timer16_write(timer16 *t, uint16_t address, uint8_t value, uint64_t edge);
+uint8_t timer16_read(timer16 *t, uint16_t address, uint64_t edge);
+
+/* The same as a read, without the side effect on TEMP. */
+uint8_t timer16_peek(timer16 *t, uint16_t address, uint64_t edge);
+
+/* Whether *address* is a register of *t*. */
+int timer16_owns(const timer16 *t, uint16_t address);
+
+#endif

@@ -1,0 +1,112 @@
+/* The registers of a 16-bit timer, as the CPU sees them. */
+
+#include <simavr/avr_timer.h>
+#include <string.h>
+
+#include "machine.h"
+#include "timer16.h"
+
+/* Offsets from TCCRnA; OCRnx follow each other, high bytes are odd. */
+enum { TCCRA = 0, TCCRB = 1, TCNTL = 4, TCNTH = 5, ICRL = 6, ICRH = 7, OCRAL = 8, LAST = 13 };
+
+static void write_compare(timer16 *t, unsigned channel, uint16_t value)
+{
+    t->buffer[channel] = value;
+    if (!timer16_is_buffered(t))
+        t->active[channel] = value;
+}
+
+static void write_enables(timer16 *t, uint8_t value, uint64_t edge)
+{
+    machine *m = t->owner;
+    uint8_t fresh = (uint8_t)(value & ~m->avr->data[t->facts->timsk]);
+    m->avr->data[t->facts->timsk] = value;
+    for (unsigned bit = 0; bit < FLAG_BITS; bit++)
+        if (fresh & (1u << bit))
+            m->enabled_at[t->facts->vector[bit]] = edge;
+    machine_attend(m);
+}
+
+static void write_block(timer16 *t, unsigned offset, uint8_t value)
+{
+    uint16_t both = (uint16_t)(t->temp << 8 | value);
+    if (offset == TCCRA) {
+        t->control_a = value;
+    } else if (offset == TCCRB) {
+        t->control_b = value;
+    } else if (offset == TCNTL) {
+        t->count = both;
+        t->blocked = 1;
+    } else if (offset == ICRL) {
+        if (timer16_top_is_icr(t)) /* read-only in the other modes */
+            t->capture = both;
+    } else if (offset >= OCRAL && !(offset & 1)) {
+        write_compare(t, (offset - OCRAL) / 2, both);
+    } else if (offset >= TCNTH) {
+        t->temp = value;
+    }
+    if (!timer16_turns(t))
+        t->down = 0;
+}
+
+void timer16_write(timer16 *t, uint16_t address, uint8_t value, uint64_t edge)
+{
+    timer16_sync(t, edge);
+    if (address == t->facts->tifr)
+        t->owner->avr->data[address] &= (uint8_t)~value;
+    else if (address == t->facts->timsk)
+        write_enables(t, value, edge);
+    else
+        write_block(t, address - t->facts->base, value);
+    timer16_schedule(t);
+}
+
+uint8_t timer16_peek(timer16 *t, uint16_t address, uint64_t edge)
+{
+    timer16_sync(t, edge);
+    if (address == t->facts->tifr || address == t->facts->timsk)
+        return t->owner->avr->data[address];
+    unsigned offset = address - t->facts->base, shift = offset & 1 ? 8 : 0;
+    switch (offset) {
+    case TCCRA:
+        return t->control_a;
+    case TCCRB:
+        return t->control_b;
+    case TCNTL:
+    case TCNTH:
+        return (uint8_t)(t->count >> shift);
+    case ICRL:
+    case ICRH:
+        return (uint8_t)(t->capture >> shift);
+    default:
+        return offset < OCRAL ? 0 : (uint8_t)(t->buffer[(offset - OCRAL) / 2] >> shift);
+    }
+}
+
+uint8_t timer16_read(timer16 *t, uint16_t address, uint64_t edge)
+{
+    unsigned offset = address - t->facts->base;
+    int latched = address >= t->facts->base && (offset == TCNTH || offset == ICRH);
+    uint8_t value = latched ? t->temp : timer16_peek(t, address, edge);
+    if (offset == TCNTL || offset == ICRL)
+        t->temp = timer16_peek(t, (uint16_t)(address + 1), edge);
+    return value;
+}
+
+int timer16_owns(const timer16 *t, uint16_t address)
+{
+    const timer16_facts *f = t->facts;
+    return address == f->timsk || address == f->tifr ||
+           (address >= f->base && address <= f->base + LAST);
+}
+
+void timer16_install(timer16 *t, machine *owner, const timer16_facts *facts)
+{
+    *t = (timer16){.owner = owner, .facts = facts};
+    for (avr_io_t *io = owner->avr->io_port; io; io = io->next) {
+        avr_timer_t *theirs = (avr_timer_t *)io;
+        /* simavr still follows its input capture pin: this makes it think ICRn is TOP. */
+        if (!strcmp(io->kind, "timer") && theirs->name == facts->name)
+            theirs->mode.top = avr_timer_wgm_reg_icr;
+    }
+}

@@ -1,0 +1,31 @@
+/* The four 16-bit timers of the ATmega2560 in mode 15, with TOPs of their own, and timer 0
+ * of simavr waking the CPU from idle sleep. */
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <avr/sleep.h>
+
+EMPTY_INTERRUPT(TIMER0_OVF_vect)
+EMPTY_INTERRUPT(TIMER1_OVF_vect)
+EMPTY_INTERRUPT(TIMER3_OVF_vect)
+EMPTY_INTERRUPT(TIMER4_OVF_vect)
+EMPTY_INTERRUPT(TIMER5_OVF_vect)
+
+#define START(n, top)           \
+  OCR##n##A = top;              \
+  TCCR##n##A = 3;               \
+  TIMSK##n = 1 << TOIE##n;      \
+  TCCR##n##B = 3 << 3 | 1
+
+int main(void)
+{
+  START(1, 999);
+  START(3, 1999);
+  START(4, 2999);
+  START(5, 3999);
+  TIMSK0 = 1 << TOIE0;
+  TCCR0B = 2;
+  set_sleep_mode(SLEEP_MODE_IDLE);
+  sleep_enable();
+  sei();
+  for (;;) sleep_cpu();
+}

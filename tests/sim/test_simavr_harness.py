@@ -1,0 +1,715 @@
+"""
+The simulator behaves as the datasheets of the ATmega328P and ATmega2560 say.
+
+Section numbers are those of the ATmega328P datasheet (DS40002061), chapter 16 "16-bit
+Timer/Counter1 with PWM" and chapter 12 "Interrupts" with 7.7 "Reset and Interrupt Handling".
+"""
+
+import random
+import struct
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stepgen.errors import StepgenError
+from stepgen.verify.simavr import Kind, Machine, build
+from stepgen.verify.simavr.events import EVENT, Events
+
+PROGRAMS = Path(__file__).parent / "programs"
+F_CPU_HZ = 16_000_000
+
+# Data addresses, ATmega328P datasheet chapter 31 "Register Summary".
+DDRB, PORTB = 0x24, 0x25
+TCCR1A, TCCR1B, TCNT1L, ICR1L, OCR1AL, OCR1BL = 0x80, 0x81, 0x84, 0x86, 0x88, 0x8A
+# Vector numbers less one, table 12-6 (ATmega328P).
+CAPT, COMPA, COMPB, OVF = 10, 11, 12, 13
+# WGM13:0 and CS12:0, tables 16-4 and 16-5.
+CTC, CTC_ICR, FAST_ICR, FAST = 4, 12, 14, 15
+CLOCKS = {1: 1, 8: 2, 64: 3, 256: 4, 1024: 5}
+
+Start = Callable[..., Machine]
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Start:
+    """
+    Return a function that compiles a program with macros and puts it into a machine.
+    """
+
+    def run(
+        program: str, *, mcu: str = "atmega328p", watch: tuple[int, ...] = (), **macros: int
+    ) -> Machine:
+        elf = tmp_path / f"{program}.elf"
+        defines = [f"-D{name}={value}" for name, value in macros.items()]
+        source = str(PROGRAMS / f"{program}.c")
+        subprocess.run(
+            ["avr-gcc", f"-mmcu={mcu}", "-Os", "-Wall", "-Werror", *defines, source, "-o", elf],
+            check=True,
+        )
+        return Machine(elf, mcu=mcu, f_cpu_hz=F_CPU_HZ, watch=watch)
+
+    return run
+
+
+def of_kind(events: Events, kind: Kind) -> Events:
+    """
+    Return the events of one kind.
+    """
+    chosen: Events = events[events["kind"] == kind]
+    return chosen
+
+
+def cycles(events: Events, kind: Kind) -> list[int]:
+    """
+    Return the cycles of the events of one kind.
+    """
+    return [int(cycle) for cycle in of_kind(events, kind)["cycle"]]
+
+
+def gaps(events: Events, kind: Kind) -> list[int]:
+    """
+    Return the cycles between the events of one kind.
+    """
+    return [int(gap) for gap in np.diff(of_kind(events, kind)["cycle"])]
+
+
+def marks(machine: Machine) -> dict[int, int]:
+    """
+    Return the cycle of each mark the program wrote.
+    """
+    written = of_kind(machine.events(), Kind.MARK)
+    return {int(row["value"]): int(row["cycle"]) for row in written}
+
+
+class PlainTimer:
+    """
+    Timer 1 of chapter 16, cycle by cycle, without compare outputs and phase correct modes.
+    """
+
+    def __init__(self) -> None:
+        self.cycle = 0
+        self.bytes = bytearray(OCR1BL + 2 - TCCR1A)
+        self.temp = 0
+        self.count = 0
+        self.capture = 0
+        self.active = [0, 0]
+        self.buffer = [0, 0]
+        self.blocked = False
+        self.raised: list[tuple[int, int]] = []
+
+    @property
+    def mode(self) -> int:
+        """
+        WGM13:0.
+        """
+        return self.bytes[0] & 3 | self.bytes[1] >> 1 & 12
+
+    def run_to(self, cycle: int) -> None:
+        """
+        Take every tick up to the one at *cycle*.
+        """
+        for edge in range(self.cycle + 1, cycle + 1):
+            prescaler = (0, 1, 8, 64)[self.bytes[1] & 3]
+            if prescaler and edge % prescaler == 0:
+                self.tick(edge)
+        self.cycle = cycle
+
+    def tick(self, edge: int) -> None:
+        """
+        Leave the count for the next one (figures 16-10 to 16-13).
+        """
+        fast, by_capture = self.mode >= FAST_ICR, self.mode in {CTC_ICR, FAST_ICR}
+        matches = [not self.blocked and self.count == value for value in self.active]
+        at_top = self.mode != 0 and (self.count == self.capture if by_capture else matches[0])
+        flags = {
+            COMPA: matches[0],
+            COMPB: matches[1],
+            CAPT: at_top and by_capture,
+            OVF: at_top if fast else self.count == 0xFFFF,
+        }
+        self.raised += [(edge, vector) for vector, is_set in flags.items() if is_set]
+        self.blocked = False
+        self.count = 0 if at_top else (self.count + 1) & 0xFFFF
+        if fast and self.count == 0:
+            self.active = list(self.buffer)
+
+    def write(self, offset: int, value: int) -> None:
+        """
+        Write the register that lies *offset* bytes after TCCR1A.
+        """
+        both = self.temp << 8 | value
+        self.bytes[offset] = value
+        if offset == TCNT1L - TCCR1A:
+            self.count, self.blocked = both, True
+        elif offset == ICR1L - TCCR1A:
+            if self.mode in {CTC_ICR, FAST_ICR}:
+                self.capture = both
+        elif offset in {OCR1AL - TCCR1A, OCR1BL - TCCR1A}:
+            channel = (offset + TCCR1A - OCR1AL) // 2
+            self.buffer[channel] = both
+            if self.mode < FAST_ICR:
+                self.active[channel] = both
+        elif offset > TCNT1L - TCCR1A:
+            self.temp = value
+
+
+def random_writes(rng: random.Random) -> Iterator[bytes]:
+    """
+    Yield rows of the table in script.c: settings of timer 1, few values, so that they meet.
+    """
+    mode = 0
+    for _ in range(200):
+        wait = rng.choice((0, 0, 1, 5, 60))
+        if rng.random() < 0.3:  # one in three changes mode and clock
+            before, mode = mode, rng.choice((0, CTC, CTC_ICR, FAST_ICR, FAST, FAST))
+            clock = rng.choice((1, 1, 1, 2, 3, 0))
+            if before >> 2 != mode >> 2 and before & 3 != mode & 3:
+                # A third mode in between would be one that the plain model has not.
+                yield struct.pack("<HBB", TCCR1B, 0, 0)
+            yield struct.pack("<HBB", TCCR1A, mode & 3, 0)
+            yield struct.pack("<HBB", TCCR1B, mode >> 2 << 3 | clock, wait)
+            continue
+        low = rng.choice((OCR1AL, OCR1AL, OCR1BL, ICR1L, TCNT1L))
+        value = rng.choice((0, 1, 7, 30, 100, 200, 0xFFF0))
+        yield struct.pack("<HBB", low + 1, value >> 8, 0)
+        yield struct.pack("<HBB", low, value & 0xFF, wait)
+
+
+@pytest.mark.parametrize("prescaler", CLOCKS)
+@pytest.mark.parametrize("mode", [CTC, CTC_ICR, FAST_ICR, FAST])
+def test_period_is_prescaler_times_top_plus_one(start: Start, mode: int, prescaler: int) -> None:
+    """
+    In CTC and fast PWM, with TOP in OCR1A or ICR1, flags are exactly p (TOP + 1) cycles apart.
+    """
+    machine = start("periodic", MODE=mode, CLOCK=CLOCKS[prescaler], TOP_VALUE=251)
+    machine.run_until(10 * prescaler * 252)
+
+    # 16.9.2 and 16.9.3: the counter takes the TOP + 1 values 0 .. TOP.
+    assert set(gaps(machine.events(), Kind.RAISE)) == {prescaler * 252}
+
+
+@pytest.mark.parametrize("mode", [0, 1, CTC, FAST])
+def test_looking_at_the_count_changes_nothing(start: Start, mode: int) -> None:
+    """
+    The counter is computed lazily: asking for it at odd moments leaves every event as it was.
+    """
+    runs: list[Events] = []
+    for asked in (False, True):
+        machine = start("periodic", MODE=mode, CLOCK=CLOCKS[8], TOP_VALUE=77)
+        for until in range(0, 100_000, 97):
+            machine.run_until(until)
+            if asked:
+                machine.register(TCNT1L)
+        machine.run_until(600_000)
+        runs.append(machine.events())
+
+    assert len(runs[0]) > 2
+    assert (runs[0] == runs[1]).all()
+
+
+@pytest.mark.parametrize(
+    ("mode", "lap"),
+    # TOP + 1 ticks; in normal mode MAX + 1; in phase correct mode 2 TOP, with TOP = 255.
+    [(0, 65_536), (1, 510), (CTC, 7), (CTC_ICR, 7), (FAST_ICR, 7), (FAST, 7)],
+)
+def test_long_idle_counting_is_exact(start: Start, mode: int, lap: int) -> None:
+    """
+    A timer that no interrupt watches counts right for seconds, and costs next to nothing.
+    """
+    macros = {"MODE": mode, "CLOCK": 1, "TOP_VALUE": 6, "UNWATCHED": 1}
+    machine = start("periodic", watch=(TCCR1B,), **macros)
+    machine.run_until(3 * F_CPU_HZ)
+    clock_on = cycles(machine.events(), Kind.REGISTER)[-1]
+    count = machine.register(TCNT1L) | machine.register(TCNT1L + 1) << 8
+
+    # Tables 16-4 and 16.9.1 to 16.9.4; in phase correct mode the second half counts down.
+    position = (machine.cycle - clock_on) % lap
+    expected = lap - position if mode == 1 and position > lap // 2 else position
+    assert count == expected
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_random_writes_do_what_a_plain_model_does(start: Start, seed: int) -> None:
+    """
+    After any writes to timer 1, every flag comes at the edge a model of single ticks gives.
+    """
+    rng = random.Random(seed)  # noqa: S311  # reproducible cases, not secrets
+    machine = start("script", watch=tuple(range(TCCR1A, OCR1BL + 2)))
+    assert machine.run_until_mark(2, limit_cycles=20_000)
+    machine.write_ram(machine.symbol("script"), b"".join(random_writes(rng))[: 200 * 4])
+    assert machine.run_until_mark(1, limit_cycles=10_000_000)
+
+    model = PlainTimer()
+    events = machine.events()
+    for row in of_kind(events, Kind.REGISTER):
+        model.run_to(int(row["cycle"]))
+        model.write(int(row["source"]) - TCCR1A, int(row["value"]))
+    model.run_to(machine.cycle)
+    raised = of_kind(events, Kind.RAISE)
+
+    assert len(raised) > 5
+    assert sorted(zip(raised["cycle"], raised["source"], strict=True)) == sorted(model.raised)
+    assert machine.register(TCNT1L) | machine.register(TCNT1L + 1) << 8 == model.count
+
+
+@pytest.mark.parametrize("prescaler", CLOCKS)
+@pytest.mark.parametrize("nops", [0, 1, 5, 100, 1000])
+def test_prescaler_runs_freely(start: Start, prescaler: int, nops: int) -> None:
+    """
+    The timer clock ticks at multiples of the prescaler since reset, whenever it is switched on.
+    """
+    machine = start(
+        "periodic", watch=(TCCR1B,), MODE=CTC, CLOCK=CLOCKS[prescaler], TOP_VALUE=20, NOPS=nops
+    )
+    machine.run_until(60 * prescaler + 2000)
+    first = cycles(machine.events(), Kind.RAISE)[0]
+    clock_on = cycles(machine.events(), Kind.REGISTER)[-1]
+
+    # 16.4 "Prescaler Reset": it operates independently of the clock select. The flag comes
+    # with the 21st tick (20.. to 0) after the write.
+    assert first == (clock_on // prescaler + 21) * prescaler
+
+
+def test_fast_pwm_takes_a_new_top_one_period_later(start: Start) -> None:
+    """
+    A new OCR1A in mode 15 leaves the running period alone and counts from the next one on.
+    """
+    machine = start("change", MODE=FAST, FROM=999, TO=499, DELAY=0, CLOCK_TO=1, watch=(OCR1AL,))
+    machine.run_until(8000)
+    raised = cycles(machine.events(), Kind.RAISE)
+    written = cycles(machine.events(), Kind.REGISTER)[-1]
+    before = [cycle for cycle in raised if cycle <= written]
+    after = [before[-1], *(cycle for cycle in raised if cycle > written)]
+
+    # 16.9.3: the compare register is updated at the clock cycle where TCNT1 is set to BOTTOM.
+    assert np.diff(before).tolist() == [1000, 1000]
+    assert np.diff(after).tolist()[:3] == [1000, 500, 500]
+
+
+def test_new_prescaler_with_the_old_top_is_a_slow_step(start: Start) -> None:
+    """
+    From /1 with TOP 9999 to /8 with TOP 99 the step between has 10 000 ticks of the slow clock.
+    """
+    change = {"MODE": FAST, "FROM": 9999, "TO": 99, "DELAY": 5000, "CLOCK_TO": 2}
+    machine = start("change", watch=(TCNT1L,), RESTART=1, **change)
+    machine.run_until(200_000)
+    raised = cycles(machine.events(), Kind.RAISE)
+    restarted = cycles(machine.events(), Kind.REGISTER)[-1]
+    last_fast = max(cycle for cycle in raised if cycle <= restarted)
+    slow, *rest = np.diff([cycle for cycle in raised if cycle >= last_fast]).tolist()
+
+    # TCNT1 = 0 at `restarted`; TOP stays 9999 until BOTTOM: the 10 000th tick of the /8 clock
+    # after it ends the period. Then TOP is 99.
+    assert slow == (restarted // 8 + 10_000) * 8 - last_fast
+    assert slow == pytest.approx(85_110, abs=100)
+    assert set(rest) == {800}
+
+
+def test_new_prescaler_keeps_the_count(start: Start) -> None:
+    """
+    Writing the clock select bits in mid period goes on from the count reached so far.
+    """
+    change = {"MODE": FAST, "FROM": 9999, "TO": 99, "DELAY": 5000, "CLOCK_TO": 2}
+    machine = start("change", watch=(TCCR1B,), **change)
+    machine.run_until(200_000)
+    raised = cycles(machine.events(), Kind.RAISE)
+    switched = cycles(machine.events(), Kind.REGISTER)[-1]
+    last_fast = max(cycle for cycle in raised if cycle <= switched)
+    count = switched - last_fast
+
+    # 9999 - count ticks of the new clock to reach TOP, one more to leave it.
+    assert raised[raised.index(last_fast) + 1] == (switched // 8 + 10_000 - count) * 8
+
+
+def test_ctc_with_a_compare_value_below_the_count_wraps(start: Start) -> None:
+    """
+    OCR1A written below TCNT1 in mode 4 is met only after the counter has passed MAX.
+    """
+    machine = start("change", MODE=CTC, FROM=999, TO=10, DELAY=100, CLOCK_TO=1)
+    machine.run_until(100_000)
+
+    # 16.9.2: "the counter will miss the compare match. The counter will then have to count to
+    # its maximum value (0xFFFF) and wrap around": 65 536 ticks, and 11 to leave 10.
+    lengths = gaps(machine.events(), Kind.RAISE)
+    assert lengths[:4] == [1000, 1000, 65_536 + 11, 11]
+
+
+@pytest.mark.parametrize(
+    ("mcu", "vector", "response"), [("atmega328p", OVF, 4), ("atmega2560", 20, 5)]
+)
+def test_interrupt_response(start: Start, mcu: str, vector: int, response: int) -> None:
+    """
+    From an instruction boundary the vector is reached in 4 cycles, in 5 on the ATmega2560.
+    """
+    machine = start("periodic", mcu=mcu, MODE=FAST, CLOCK=1, TOP_VALUE=999)
+    machine.run_until(10_000)
+    entered = of_kind(machine.events(), Kind.ISR_ENTER)
+    port = of_kind(machine.events(), Kind.PORT)[1:]
+    left = of_kind(machine.events(), Kind.ISR_EXIT)
+
+    # 7.7.1, and 7.8.1 of the ATmega2560's: then jmp (3), sbi (2) and reti (4 or 5).
+    count = len(left)
+    assert count == 9
+    assert set(entered["source"]) == set(left["source"]) == {vector}
+    assert set(port["cycle"][:count] - entered["cycle"][:count]) == {response + 3 + 2}
+    assert set(left["cycle"] - entered["cycle"][:count]) == {response + 3 + 2 + response}
+    assert (left["since"] == entered["cycle"][:count]).all()
+    # The loop is a rjmp of 2 cycles: the flag waits for its end at most.
+    assert set(entered["cycle"] - entered["since"]) <= {0, 1}
+
+
+def test_mega_has_four_timers(start: Start) -> None:
+    """
+    Timers 1, 3, 4 and 5 of the ATmega2560 run at once, each with its vector and period.
+    """
+    machine = start("four_timers", mcu="atmega2560")
+    machine.run_until(100_000)
+    raised = of_kind(machine.events(), Kind.RAISE)
+    periods = {
+        vector: set(np.diff(raised["cycle"][raised["source"] == vector]).tolist())
+        for vector in set(raised["source"].tolist())
+    }
+
+    # Table 14-1 of the ATmega2560's datasheet, numbers less one.
+    assert periods == {20: {1000}, 35: {2000}, 45: {3000}, 50: {4000}}
+
+
+def test_simavrs_own_timer_wakes_with_the_same_delay(start: Start) -> None:
+    """
+    Timer 0, which simavr itself simulates, wakes from sleep with the chip's response, too.
+    """
+    machine = start("four_timers", mcu="atmega2560")
+    machine.run_until(100_000)
+    events = machine.events()
+    left = of_kind(events, Kind.ISR_EXIT)
+    of_timer_0 = left[left["source"] == 23]
+
+    # The ISR is empty: response (5) and 4 for waking, jmp (3), reti (5); without the 4 where
+    # another ISR has woken the CPU before.
+    lengths = (of_timer_0["cycle"] - of_timer_0["since"]).tolist()
+    assert lengths.count(5 + 4 + 3 + 5) > lengths.count(5 + 3 + 5)
+    assert set(lengths) <= {17, 13}
+
+
+def test_idle_sleep_adds_four_cycles_and_no_real_time(start: Start) -> None:
+    """
+    A minute of idle sleep passes at once, and waking makes the response 4 cycles longer.
+    """
+    machine = start("periodic", MODE=FAST, CLOCK=CLOCKS[1024], TOP_VALUE=15_624, IDLE=1)
+    machine.run_until(60 * F_CPU_HZ + 100)
+    entered = of_kind(machine.events(), Kind.ISR_ENTER)
+    port = of_kind(machine.events(), Kind.PORT)[1:]
+
+    # 1024 * 15 625 cycles are 1 s. 7.7.1: "If an interrupt occurs when the MCU is in sleep mode,
+    # the interrupt execution response time is increased by four clock cycles".
+    assert len(entered) == 60
+    assert (entered["cycle"] == entered["since"]).all()
+    assert set(port["cycle"] - entered["cycle"]) == {4 + 4 + 3 + 2}
+
+
+def test_masked_flag_stays_pending_once(start: Start) -> None:
+    """
+    A flag that comes while I is clear waits, a second one is lost, and sei lets it in.
+    """
+    machine = start("masked")
+    assert machine.run_until_mark(2, limit_cycles=10_000)
+    first, second = of_kind(machine.events(), Kind.RAISE)
+    entered = of_kind(machine.events(), Kind.ISR_ENTER)
+
+    assert second["cycle"] - first["cycle"] == 1000
+    assert (first["value"], second["value"]) == (0, 1)
+    assert len(entered) == 1
+    assert entered["since"][0] == first["cycle"]
+    # 7.7: "the instruction following SEI will be executed before any pending interrupts":
+    # a nop of one cycle.
+    assert entered["masked_until"][0] == entered["cycle"][0] - 1
+    assert entered["masked_until"][0] > second["cycle"]
+
+
+def test_one_instruction_between_sei_and_cli_is_a_window(start: Start) -> None:
+    """
+    `sei; nop; cli` lets a pending interrupt in after the nop, `sei; cli` does not.
+    """
+    machine = start("masked")
+    assert machine.run_until_mark(6, limit_cycles=20_000)
+    at = marks(machine)
+    entered = cycles(machine.events(), Kind.ISR_ENTER)
+
+    assert len([cycle for cycle in entered if at[3] < cycle < at[4]]) == 1
+    assert not [cycle for cycle in entered if at[5] < cycle < at[6]]
+
+
+def test_flag_fires_when_its_enable_bit_is_set(start: Start) -> None:
+    """
+    With OCIE1A clear a raised flag waits; setting the bit lets the interrupt in at once.
+    """
+    machine = start("masked")
+    assert machine.run_until_mark(8, limit_cycles=20_000)
+    at = marks(machine)
+    entered = of_kind(machine.events(), Kind.ISR_ENTER)
+    late = entered[entered["cycle"] > at[6]]
+
+    assert len(late) == 1
+    assert at[7] < late["cycle"][0] < at[8]
+    assert late["since"][0] < at[6]
+    assert late["masked_until"][0] == late["cycle"][0]
+
+
+@pytest.mark.parametrize("mcu", ["atmega328p", "atmega2560"])
+def test_writing_ones_to_pinx_toggles_those_bits(start: Start, mcu: str) -> None:
+    """
+    `out` and `sts` to PINx toggle the bits of the mask, `sbi` just its one, `cbi` none.
+    """
+    machine = start("ports", mcu=mcu)
+    assert machine.run_until_mark(1, limit_cycles=1000)
+    port = of_kind(machine.events(), Kind.PORT)
+    values = [int(v) for v in port["value"][port["source"] == PORTB]]
+
+    # 14.2.2; and 14.4: "SBI and CBI instructions will only operate on the specified bit".
+    # 0x24 ^ 0x0C = 0x28, ^ 0x10 = 0x38, ^ 0x21 = 0x19, | 0x04 = 0x1D.
+    assert values == [0x24, 0x28, 0x38, 0x19, 0x1D]
+    assert machine.register(PORTB) == 0x1D
+    assert port["source"][0] == DDRB
+    if mcu == "atmega2560":  # port H is beyond in and out: 0x102
+        assert [int(v) for v in port["value"][port["source"] == 0x102]] == [0x18, 0x08]
+
+
+def test_port_events_are_stamped_at_the_end_of_their_instruction(start: Start) -> None:
+    """
+    From one port write to the next it is the cycles of the instructions between.
+    """
+    machine = start("ports")
+    machine.run_until_mark(1, limit_cycles=1000)
+    out, sbi, sts, sbi_again = gaps(machine.events(), Kind.PORT)[1:]
+
+    # ldi + out; sbi; cbi + ldi + sts; sbi (chapter 32: sbi, cbi and sts take 2 cycles).
+    assert (out, sbi, sts, sbi_again) == (2, 2, 5, 2)
+
+
+def test_16_bit_registers_share_one_temp_byte(start: Start) -> None:
+    """
+    Reading TCNT1L latches the high byte in TEMP, which a write to OCR1AH replaces.
+    """
+    machine = start("registers")
+    assert machine.run_until_mark(1, limit_cycles=10_000)
+    held = machine.read_ram(machine.symbol("bytes"), 6)
+
+    # 16.3: one TEMP per timer; OCR1A is read without it. TCNT1 = 0x1234, then OCR1AH = 0x56.
+    # 16.11.7: ICR1 can only be written in a mode where it is TOP, so it is still 0.
+    assert list(held) == [0x34, 0x56, 0x78, 0x56, 0, 0]
+
+
+def test_writing_the_count_blocks_the_next_compare(start: Start) -> None:
+    """
+    TCNT1 = OCR1A raises nothing, TCNT1 = OCR1A - 1 does; a count written at rest is kept.
+    """
+    machine = start("registers")
+    assert machine.run_until_mark(1, limit_cycles=10_000)
+    blocked, passed, _ = machine.read_ram(machine.symbol("flags"), 3)
+
+    # 16.7.2; OCF1A is bit 1.
+    assert blocked & 2 == 0
+    assert passed & 2 == 2
+
+
+def test_sbi_clears_one_flag_only(start: Start) -> None:
+    """
+    `sbi TIFR1, 1` clears OCF1A and leaves OCF1B raised.
+    """
+    machine = start("registers")
+    assert machine.run_until_mark(1, limit_cycles=10_000)
+
+    assert machine.read_ram(machine.symbol("flags"), 3)[2] & 0b110 == 0b100
+
+
+def test_counter_runs_from_write_to_write(start: Start) -> None:
+    """
+    Between two clock select writes 10 cycles apart the counter at /1 ticks 10 times.
+    """
+    machine = start("registers")
+    assert machine.run_until_mark(1, limit_cycles=10_000)
+    raw = machine.read_ram(machine.symbol("counts"), 4)
+
+    # Eight nops and the sts of 2 cycles; stopped, both reads are the same.
+    assert [int.from_bytes(raw[i : i + 2], "little") for i in (0, 2)] == [1010, 1010]
+
+
+def test_serial_line_goes_both_ways(start: Start) -> None:
+    """
+    Bytes that are sent to USART0 arrive one by one, and what it sends is recorded.
+    """
+    machine = start("serial")
+    machine.send_serial(b"HAL")
+    machine.run_until(10_000)
+
+    sent = of_kind(machine.events(), Kind.UART)
+
+    # 19.3.1: 16 (UBRR + 1) cycles per bit, 10 bits per byte; the ISRs answer at once.
+    assert bytes(sent["value"].astype("u1")) == b"IBM"
+    assert np.diff(sent["cycle"]).tolist() == pytest.approx([640, 640], abs=3)
+    assert (machine.serial_waiting, machine.serial_lost) == (0, 0)
+
+
+def test_stack_of_an_isr_counts_its_return_address(start: Start) -> None:
+    """
+    The stack of an ISR goes from its return address to the deepest push.
+    """
+    machine = start("stack")
+    machine.run_until(100_000)
+
+    # 2 return address + 1 push + 2 rcall + 3 pushes; main is called (2) before.
+    assert machine.isr_stack == {OVF: 8}
+    assert machine.stack_deepest == 2 + 8
+    assert {int(v) for v in of_kind(machine.events(), Kind.ISR_EXIT)["value"]} == {8}
+
+
+def test_variables_can_be_read_and_written(start: Start) -> None:
+    """
+    The test sees the program's variables by name and may change them.
+    """
+    machine = start("stack")
+    machine.run_until(1000)
+    assert machine.read_ram(machine.symbol("answered"), 2) == b"\x03\x01"
+
+    machine.write_ram(machine.symbol("asked"), b"\xff\x0f")
+    assert machine.run_until_mark(9, limit_cycles=200)
+    assert not machine.run_until_mark(10, limit_cycles=200)
+
+
+def test_fine_recording_shows_when_interrupts_are_off(start: Start) -> None:
+    """
+    With fine recording each cli and sei of the main program leaves an event.
+    """
+    machine = start("masked")
+    machine.fine = True
+    assert machine.run_until_mark(4, limit_cycles=10_000)
+    machine.run_until(machine.cycle + 10)
+    events = machine.events()
+    kinds = [Kind(k) for k in events["kind"] if k in {Kind.MASKED, Kind.UNMASKED}]
+
+    assert kinds == [Kind.UNMASKED, Kind.MASKED] * 2
+    # sei, nop, nop, cli: 3 cycles from the end of sei to the end of cli, and the ISR between.
+    on, off = cycles(events, Kind.UNMASKED)[0], cycles(events, Kind.MASKED)[0]
+    inside = cycles(events, Kind.ISR_EXIT)[0] - cycles(events, Kind.ISR_ENTER)[0]
+    assert off - on == 3 + inside
+
+
+def test_fine_recording_changes_no_cycle(start: Start) -> None:
+    """
+    Looking at each instruction alone gives the same events at the same cycles.
+    """
+    runs: list[Events] = []
+    for fine in (False, True):
+        machine = start("masked")
+        machine.fine = fine
+        machine.run_until(20_000)
+        events = machine.events()
+        runs.append(events[~np.isin(events["kind"], [Kind.MASKED, Kind.UNMASKED])])
+
+    assert (runs[0] == runs[1]).all()
+
+
+@pytest.mark.parametrize(("mcu", "wide"), [("atmega328p", 0), ("atmega2560", 1)])
+def test_instructions_take_the_cycles_of_the_datasheet(start: Start, mcu: str, wide: int) -> None:
+    """
+    Each kind of instruction takes the cycles of the instruction set summary.
+    """
+    machine = start("instructions", mcu=mcu)
+    assert machine.run_until_mark(3, limit_cycles=1000)
+    # Every other gap, less the cycle of the out that is the second mark.
+    taken = [gap - 1 for gap in gaps(machine.events(), Kind.MARK)[::2]]
+
+    # In the order of instructions.c; `wide` is the third byte of the ATmega2560's PC.
+    assert taken == [
+        *(1, 1, 1, 1),  # nop, add, movw, ldi
+        *(2, 2, 2),  # adiw, mul, sbiw
+        *(2, 2, 2, 2, 2, 2),  # lds, sts, ld X, ld -X, std Y+q, ldd Y+q
+        *(3, 3),  # lpm Z, lpm Z+
+        *(2, 2, 1, 1),  # push, pop, in, out
+        *(2, 2),  # sbi, cbi
+        *(2, 3, 2),  # rjmp, jmp, ijmp
+        *(1, 2),  # brne: not taken, taken
+        *(1, 2, 3),  # sbrs: no skip, skip of one word, of two
+        *(1, 2, 3),  # cpse: the same
+        *(1, 2, 3),  # sbis: the same
+        *(3 + 4 + 2 * wide, 4 + 4 + 2 * wide, 3 + 4 + 2 * wide),  # rcall, call, icall; each ret
+    ]
+
+
+@pytest.mark.parametrize("macros", [{}, {"LOST": 1}])
+def test_crash_is_an_error(start: Start, macros: dict[str, int]) -> None:
+    """
+    A program that sleeps for ever or leaves its code raises, and says where.
+    """
+    machine = start("crash", **macros)
+
+    with pytest.raises(StepgenError, match="the program crashed at cycle"):
+        machine.run_until(100_000)
+
+
+def test_two_machines_do_not_disturb_each_other(start: Start) -> None:
+    """
+    Two machines run in turns in one process, each with its own events.
+    """
+    one = start("periodic", MODE=FAST, CLOCK=1, TOP_VALUE=999)
+    two = start("periodic", MODE=FAST, CLOCK=1, TOP_VALUE=499)
+    for until in range(1000, 20_000, 777):
+        one.run_until(until)
+        two.run_until(until)
+
+    assert set(gaps(one.events(), Kind.RAISE)) == {1000}
+    assert set(gaps(two.events(), Kind.RAISE)) == {500}
+
+
+def test_events_outlive_their_machine(start: Start) -> None:
+    """
+    An array of events stays valid after close(), and a closed machine says so.
+    """
+    with start("periodic", MODE=FAST, CLOCK=1, TOP_VALUE=999) as machine:
+        machine.run_until(5000)
+        events = machine.events()
+
+    assert events.dtype == EVENT
+    assert len(cycles(events, Kind.RAISE)) == 4
+    with pytest.raises(StepgenError, match="closed"):
+        machine.run_until(6000)
+
+
+def test_unknown_chip_is_refused(start: Start, tmp_path: Path) -> None:
+    """
+    A chip without a table of facts is refused by name.
+    """
+    start("stack").close()
+
+    with pytest.raises(StepgenError, match=r"attiny13.* atmega328p and atmega2560"):
+        Machine(tmp_path / "stack.elf", mcu="attiny13", f_cpu_hz=F_CPU_HZ)
+
+
+def test_kinds_are_those_of_the_header() -> None:
+    """
+    The numbers of the kinds and the size of a record agree between C and Python.
+    """
+    harness = build.load()
+
+    assert {kind: getattr(harness.lib, f"EVENT_{kind.name}") for kind in Kind} == {
+        kind: kind.value for kind in Kind
+    }
+    assert harness.ffi.sizeof("event") == EVENT.itemsize
+
+
+def test_missing_headers_name_the_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """
+    Without a compiler or libsimavr the error says which Debian packages to install.
+    """
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    build.load.cache_clear()
+    try:
+        for compiler, reason in (("no-such-compiler", "not here"), ("false", "does not compile")):
+            monkeypatch.setenv("CC", compiler)
+            with pytest.raises(StepgenError, match=rf"{reason}.*apt install .*libsimavr-dev"):
+                build.load()
+    finally:
+        build.load.cache_clear()

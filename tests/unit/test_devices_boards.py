@@ -1,0 +1,197 @@
+"""
+Boards: every pin agrees with the Arduino core or, for the serial ports, the datasheet.
+"""
+
+import re
+
+import pytest
+
+from stepgen.devices import Board, Pin, boards, find_board
+
+# RXDn and TXDn, from the datasheets' chapters "Alternate Port Functions".
+SERIAL_PINS = {
+    "atmega328p": {"Serial RX": "PD0", "Serial TX": "PD1"},
+    "atmega2560": {
+        "Serial RX": "PE0",
+        "Serial TX": "PE1",
+        "Serial1 RX": "PD2",
+        "Serial1 TX": "PD3",
+        "Serial2 RX": "PH0",
+        "Serial2 TX": "PH1",
+        "Serial3 RX": "PJ0",
+        "Serial3 TX": "PJ1",
+    },
+}
+NOT_AN_INTERRUPT = 255
+
+
+def pins_with(board: Board, pattern: str) -> dict[str, Pin]:
+    """
+    Return the pins with a use that matches *pattern*, by that use.
+    """
+    return {use: pin for pin in board.pins for use in pin.uses if re.fullmatch(pattern, use)}
+
+
+def test_every_pin_is_where_the_core_has_it(
+    board: Board,
+    pin_tables: dict[str, bytes],
+    core_numbers: dict[str, int],
+    libc_registers: dict[str, int],
+) -> None:
+    """
+    The header pins are all digital pins of the variant, each on the core's port and bit.
+    """
+    words = pin_tables["port_to_output_PGM"]
+    outputs = [int.from_bytes(words[i : i + 2], "little") for i in range(0, len(words), 2)]
+    letters = {libc_registers[f"PORT{port.letter}"]: port.letter for port in board.mcu.ports}
+    ports = [letters[outputs[code]] for code in pin_tables["digital_pin_to_port_PGM"]]
+    masks = list(pin_tables["digital_pin_to_bit_mask_PGM"])
+
+    assert [pin.number for pin in board.pins] == list(range(core_numbers["NUM_DIGITAL_PINS"]))
+    assert [pin.bit.port for pin in board.pins] == ports
+    assert [1 << pin.bit.bit for pin in board.pins] == masks
+    assert all(pin.bit.bit in board.mcu.port(pin.bit.port).bits for pin in board.pins)
+
+
+def test_labels_are_those_on_the_board(board: Board, core_numbers: dict[str, int]) -> None:
+    """
+    Pins that are analog inputs are labelled A0 and so on, the others by their number.
+    """
+    inputs = range(core_numbers["NUM_ANALOG_INPUTS"])
+    analog = {core_numbers[f"PIN_A{number}"]: f"A{number}" for number in inputs}
+
+    assert [pin.label for pin in board.pins] == [
+        analog.get(pin.number, f"D{pin.number}") for pin in board.pins
+    ]
+
+
+def test_uses_of_pins_are_those_of_the_core(
+    board: Board, pin_tables: dict[str, bytes], core_numbers: dict[str, int]
+) -> None:
+    """
+    SPI, I2C, LED and PWM are on the pins that the core's variant names.
+    """
+    names = {f"SPI {signal}": f"PIN_SPI_{signal}" for signal in ("SS", "MOSI", "MISO", "SCK")}
+    names |= {f"I2C {signal}": f"PIN_WIRE_{signal}" for signal in ("SDA", "SCL")}
+    names |= {"LED": "LED_BUILTIN"}
+    expected = {use: core_numbers[macro] for use, macro in names.items()}
+    pwm = {
+        number: f"PWM OC{name[5:]}"
+        for name, number in core_numbers.items()
+        if re.fullmatch(r"TIMER\d[A-D]", name)
+    }
+    expected |= {
+        pwm[code]: number
+        for number, code in enumerate(pin_tables["digital_pin_to_timer_PGM"])
+        if code
+    }
+    found = pins_with(board, "(SPI|I2C|PWM) .*|LED")
+
+    assert {use: pin.number for use, pin in found.items()} == expected
+
+
+def test_external_interrupts_are_those_of_the_core(
+    board: Board,
+    pin_tables: dict[str, bytes],
+    core_interrupts: dict[int, int],
+    libc_vectors: dict[str, int],
+) -> None:
+    """
+    A pin's INTn is the chip's n: the vector behind the core's digitalPinToInterrupt().
+    """
+    names = {number: name.removesuffix("_vect") for name, number in libc_vectors.items()}
+    expected = {
+        names[core_interrupts[interrupt]]: number
+        for number, interrupt in enumerate(pin_tables["digital_pin_to_interrupt_PGM"])
+        if interrupt != NOT_AN_INTERRUPT
+    }
+
+    assert {use: pin.number for use, pin in pins_with(board, r"INT\d").items()} == expected
+
+
+def test_serial_ports_are_on_the_chips_pins(board: Board) -> None:
+    """
+    Each USART of the chip is a Serial on the pins RXDn and TXDn.
+    """
+    found = {use: pin.bit.name for use, pin in pins_with(board, r"Serial\d? [RT]X").items()}
+
+    assert found == SERIAL_PINS[board.mcu.name]
+
+
+def test_every_use_is_of_a_checked_kind(board: Board) -> None:
+    """
+    No pin has a use that the tests above do not check, and none is given twice.
+    """
+    checked = r"(SPI|I2C|PWM) .*|LED|INT\d|Serial\d? [RT]X"
+    uses = [use for pin in board.pins for use in pin.uses]
+
+    assert sorted(uses) == sorted(pins_with(board, checked))
+
+
+def test_boards_are_those_of_boards_txt(board: Board, boards_txt: dict[str, str]) -> None:
+    """
+    Clock, chip, variant and define are what the core's boards.txt gives for the FQBN.
+    """
+    package, architecture, name, *options = board.fqbn.split(":")
+    prefixes = [name, *(f"{name}.menu.{option.replace('=', '.')}" for option in options)]
+    build = {
+        key.removeprefix(f"{prefix}.build."): value
+        for prefix in prefixes
+        for key, value in boards_txt.items()
+        if key.startswith(f"{prefix}.build.")
+    }
+
+    assert (package, architecture, name) == ("arduino", "avr", board.name)
+    assert build["mcu"] == board.mcu.name
+    assert build["f_cpu"] == f"{board.f_cpu_hz}L"
+    assert build["variant"] == board.variant
+    assert f"ARDUINO_{build['board']}" == board.core_define
+
+
+@pytest.mark.parametrize(
+    ("text", "label"),
+    [
+        ("D12", "D12"),
+        ("d12", "D12"),
+        ("12", "D12"),
+        ("PB4", "D12"),
+        ("pb4", "D12"),
+        ("A0", "A0"),
+        ("a0", "A0"),
+        ("14", "A0"),
+        ("D14", "A0"),
+        ("PC0", "A0"),
+    ],
+)
+def test_a_pin_is_found_by_all_its_names(text: str, label: str, uno: Board) -> None:
+    """
+    A pin goes by its label, its number and its port bit, in any case.
+    """
+    found = uno.find_pin(text)
+
+    assert found is not None
+    assert found.label == label
+
+
+@pytest.mark.parametrize("text", ["PB6", "PC6", "D20", "A6", "PB8", "D012", "B4", "", "-1"])
+def test_what_is_on_no_header_is_not_found(text: str, uno: Board) -> None:
+    """
+    Port bits without a header pin, numbers past the last and misspelt names find nothing.
+    """
+    assert uno.find_pin(text) is None
+
+
+def test_every_name_of_a_pin_is_its_own(board: Board) -> None:
+    """
+    Each name of each pin finds that pin and no other.
+    """
+    assert all(board.find_pin(name) is pin for pin in board.pins for name in pin.names)
+
+
+def test_boards_are_found_by_name() -> None:
+    """
+    Every board is found by its own name, and no other name finds one.
+    """
+    assert {"mega", "uno"} <= {board.name for board in boards()}
+    assert all(find_board(board.name) is board for board in boards())
+    assert find_board("Uno") is None

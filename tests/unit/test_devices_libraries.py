@@ -1,0 +1,83 @@
+"""
+Other libraries of a sketch: what they take agrees with their object files.
+"""
+
+from collections.abc import Callable
+
+import pytest
+
+from stepgen.devices import SKETCH_LIBRARIES, Board, library_claims
+
+SERIAL_SOURCES = {
+    "Serial": "cores/arduino/HardwareSerial0.cpp",
+    "Serial1": "cores/arduino/HardwareSerial1.cpp",
+    "Serial2": "cores/arduino/HardwareSerial2.cpp",
+    "Serial3": "cores/arduino/HardwareSerial3.cpp",
+}
+LIBRARY_SOURCES = {
+    "millis": "cores/arduino/wiring.c",
+    "tone": "cores/arduino/Tone.cpp",
+    "SPI": "libraries/SPI/src/SPI.cpp",
+    "SoftwareSerial": "libraries/SoftwareSerial/src/SoftwareSerial.cpp",
+    "Wire": "libraries/Wire/src/utility/twi.c",
+    **SERIAL_SOURCES,
+}
+
+
+@pytest.mark.parametrize("name", LIBRARY_SOURCES)
+def test_libraries_take_the_vectors_they_define(
+    name: str, board: Board, vectors_defined_by: Callable[[str], set[int]]
+) -> None:
+    """
+    The vectors of a library are those in its object file; where there are none, it is absent.
+    """
+    defined = vectors_defined_by(LIBRARY_SOURCES[name])
+    claims = library_claims(name, board)
+
+    if name in SERIAL_SOURCES and not defined:
+        assert claims is None
+    else:
+        assert claims is not None
+        assert {vector.number for vector in claims.vectors} == defined
+        assert {f"TIMER{timer}" for timer in claims.timers} == {
+            vector.name.split("_")[0] for vector in claims.vectors if "TIMER" in vector.name
+        }
+
+
+def test_libraries_take_the_pins_meant_for_them(board: Board) -> None:
+    """
+    Serial, SPI and Wire take the pins that the board marks as theirs; others take none.
+    """
+    kinds = {"SPI": "SPI", "Wire": "I2C"} | {name: name for name in SERIAL_SOURCES}
+    for name in SKETCH_LIBRARIES:
+        claims = library_claims(name, board)
+        kind = kinds.get(name, "none")
+        marked = {pin.bit for pin in board.pins for use in pin.uses if use.split()[0] == kind}
+        assert claims is None or set(claims.pins) == marked
+
+
+def test_servo_takes_timers_as_servos_are_attached(uno: Board, mega: Board) -> None:
+    """
+    Servo takes timer 1 of the Uno; of the Mega 5, 1, 3, 4, with all four COMPA vectors.
+
+    From ServoTimers.h and Servo.h (SERVOS_PER_TIMER) of arduino-libraries/Servo.
+    """
+    on_uno, on_mega = (library_claims("Servo", board) for board in (uno, mega))
+
+    assert on_uno is not None
+    assert on_uno.timers == (1,)
+    assert [vector.name for vector in on_uno.vectors] == ["TIMER1_COMPA_vect"]
+    assert on_mega is not None
+    assert on_mega.timers == (5, 1, 3, 4)
+    assert {vector.name for vector in on_mega.vectors} == {
+        f"TIMER{timer}_COMPA_vect" for timer in (1, 3, 4, 5)
+    }
+    assert on_mega.objects_per_timer == 12
+
+
+def test_an_unknown_library_has_no_claims(uno: Board) -> None:
+    """
+    A name outside the table has no claims, and names are matched exactly.
+    """
+    assert library_claims("FastLED", uno) is None
+    assert library_claims("servo", uno) is None
