@@ -11,8 +11,9 @@ from stepgen.plan.isr import HotPath, Storage
 from stepgen.plan.kernels import Kernel
 from stepgen.spec import Library
 
-_RETIME_CYCLES = 60  # of the boundary handler until it starts the clock; both compilers
-_THINKING_CYCLES = 45  # more, when it reads the clock and makes the step itself
+HANDLER_BOUND_CYCLES = 145  # the handler of the rare ways, with all of them at once
+_RETIME_CYCLES = 64  # of the boundary handler until it starts the clock, as measured
+_THINKING_CYCLES = 20  # more, when it looks at the clock and makes the step itself
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,13 @@ class MotorPlan:
         Return the same where the handler itself made the step, because of a millisecond limit.
         """
         return self.hot_path.think_entry_cycles + _THINKING_CYCLES + _RETIME_CYCLES
+
+    @property
+    def isr_bound_cycles(self) -> int:
+        """
+        Return the longest that its step interrupt may take, from the response through RETI.
+        """
+        return self.hot_path.boundary_entry_cycles + HANDLER_BOUND_CYCLES
 
     @property
     def port_letters(self) -> str:

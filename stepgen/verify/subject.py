@@ -1,0 +1,96 @@
+"""
+What verification knows of a motor, taken from the spec and the board, not from the plan.
+
+The oracle must not share the planner's tables: wires and phases are read here once more.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from stepgen.devices import Board, PortBit
+from stepgen.plan.model import Plan
+from stepgen.reference.facts import MotorFacts
+from stepgen.reference.sequences import coils_off, phases
+from stepgen.spec import LoadedSpec, Motor
+
+_SHIELD_WIRES = ("D3", "D11", "D12", "D13")  # PWM A, PWM B, DIR A, DIR B
+
+
+@dataclass(frozen=True)
+class Subject:
+    """
+    One motor as the oracle sees it.
+
+    Args:
+        name: Its name in the spec.
+        facts: What the reference model needs.
+        wires: The port bit of each wire, in the model's order.
+        vector: Number of the interrupt that makes its steps.
+        is_shield: Whether its wires are the motor shield's enables and directions.
+        tccrb: Data address of the register that holds its clock select; tcnt likewise.
+    """
+
+    name: str
+    facts: MotorFacts
+    wires: tuple[PortBit, ...]
+    vector: int
+    tccrb: int
+    tcnt: int
+    is_shield: bool
+
+    @property
+    def masks(self) -> dict[str, int]:
+        """
+        Return the bits of its wires on each port, by the port's letter.
+        """
+        masks: dict[str, int] = {}
+        for bit in self.wires:
+            masks[bit.port] = masks.get(bit.port, 0) | 1 << bit.bit
+        return masks
+
+    def pattern(self, ports: dict[str, int]) -> tuple[bool, ...]:
+        """
+        Return what its wires show when the ports hold *ports*.
+        """
+        return tuple(bool(ports[bit.port] >> bit.bit & 1) for bit in self.wires)
+
+
+def subjects(loaded: LoadedSpec, plan: Plan) -> tuple[Subject, ...]:
+    """
+    Return the motors of *loaded*; the planner's choice of timer and range comes from *plan*.
+    """
+    found = []
+    for name, planned in zip(loaded.spec.motors, plan.motors, strict=True):
+        motor = loaded.spec.motors[name]
+        timer = planned.timing.timer
+        found.append(
+            Subject(
+                name=name,
+                facts=_facts(motor, plan),
+                wires=_wires(motor.drive, plan.board),
+                vector=plan.board.mcu.vector(planned.timing.vector).number,
+                tccrb=timer.tccrb.address,
+                tcnt=timer.tcnt.address,
+                is_shield=motor.drive.kind == "motor-shield",
+            )
+        )
+    return tuple(found)
+
+
+def _facts(motor: Motor, plan: Plan) -> MotorFacts:
+    drive: Any = motor.drive
+    kind: Literal["four-wire", "motor-shield"] = drive.kind
+    sequence: str | Sequence[str] = getattr(drive.sequence, "patterns", drive.sequence)
+    return MotorFacts(
+        phases=phases(kind, sequence),
+        coils_off=coils_off(kind),
+        minimum_cycles=plan.minimum_period_cycles,
+        at_rest=motor.at_rest,
+    )
+
+
+def _wires(drive: Any, board: Board) -> tuple[PortBit, ...]:  # noqa: ANN401 - any kind of drive
+    names = _SHIELD_WIRES if drive.kind == "motor-shield" else drive.pins
+    pins = [board.find_pin(name) for name in names]
+    return tuple(pin.bit for pin in pins if pin)

@@ -1,0 +1,166 @@
+"""
+From recorded events to what each motor was seen to do.
+"""
+
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from stepgen.devices import Mcu
+from stepgen.verify.simavr.events import Events, Kind
+
+_CLOCK_SELECT = 0b111
+_PRESCALERS = {1: 1, 2: 8, 3: 64, 4: 256, 5: 1024}  # CSn2..0, datasheet
+
+
+@dataclass(frozen=True)
+class PortState:
+    """
+    A port register from a cycle on.
+    """
+
+    cycle: int
+    port: str
+    value: int
+
+
+@dataclass(frozen=True)
+class Run:
+    """
+    One run of a step interrupt.
+
+    Args:
+        raised: Cycle at which the timer set the flag.
+        unmasked: Cycle from which the interrupt could be taken; *raised* if that was at once.
+        entered: Cycle at which the response began.
+        left: Cycle after RETI.
+        writes: What it wrote to the ports, in order.
+    """
+
+    raised: int
+    unmasked: int
+    entered: int
+    left: int
+    writes: tuple[PortState, ...]
+
+
+@dataclass(frozen=True)
+class ClockStart:
+    """
+    The clock select of a timer was set, with *tcnt* in its counter.
+    """
+
+    cycle: int
+    prescaler: int
+    tcnt: int
+
+
+@dataclass
+class Trace:
+    """
+    Everything that a bench run recorded, in the order of cycles.
+    """
+
+    events: Events
+    mcu: Mcu
+    ports: list[PortState] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.events = np.sort(self.events, order="cycle", kind="stable")
+        letters = {port.port.address: port.letter for port in self.mcu.ports}
+        rows = self._of(Kind.PORT)
+        self.ports = [
+            PortState(int(row["cycle"]), letters[int(row["source"])], int(row["value"]))
+            for row in rows
+            if int(row["source"]) in letters
+        ]
+        self._port_cycles = [state.cycle for state in self.ports]
+        self.masked = [int(row["cycle"]) for row in self._of(Kind.MASKED)]
+        self.unmasked = [int(row["cycle"]) for row in self._of(Kind.UNMASKED)]
+
+    def _of(self, kind: Kind, source: int | None = None) -> Events:
+        chosen = self.events["kind"] == kind
+        if source is not None:
+            chosen &= self.events["source"] == source
+        return self.events[chosen]
+
+    def runs(self, vector: int) -> list[Run]:
+        """
+        Return the runs of the interrupt *vector*; one that has not ended is left out.
+        """
+        enters = self._of(Kind.ISR_ENTER, vector)
+        exits = self._of(Kind.ISR_EXIT, vector)
+        rows = zip(
+            enters["since"].tolist(),
+            enters["masked_until"].tolist(),
+            enters["cycle"].tolist(),
+            exits["cycle"].tolist(),
+            strict=False,
+        )
+        return [
+            Run(since, max(since, until), entered, left, self._writes(entered, left))
+            for since, until, entered, left in rows
+        ]
+
+    def _writes(self, first: int, last: int) -> tuple[PortState, ...]:
+        low = bisect_right(self._port_cycles, first)
+        return tuple(self.ports[low : bisect_right(self._port_cycles, last)])
+
+    def ports_at(self, cycle: int) -> dict[str, int]:
+        """
+        Return what all ports hold after everything up to and including *cycle*.
+        """
+        held = {port.letter: 0 for port in self.mcu.ports}
+        for state in self.ports[: bisect_right(self._port_cycles, cycle)]:
+            held[state.port] = state.value
+        return held
+
+    def clock_starts(self, tccrb: int, tcnt: int) -> list[ClockStart]:
+        """
+        Return when the timer's clock select was set after it had been 0.
+        """
+        starts = []
+        counter = {tcnt: 0, tcnt + 1: 0}
+        running = False
+        rows = self._of(Kind.REGISTER)
+        for cycle, source, value in zip(
+            rows["cycle"].tolist(), rows["source"].tolist(), rows["value"].tolist(), strict=True
+        ):
+            if source in counter:
+                counter[source] = value
+            elif source == tccrb:
+                select = value & _CLOCK_SELECT
+                if select and not running:
+                    count = counter[tcnt] | counter[tcnt + 1] << 8
+                    starts.append(ClockStart(cycle, _PRESCALERS[select], count))
+                running = bool(select)
+        return starts
+
+    def millis_ticks(self, vector: int) -> list[tuple[int, int]]:
+        """
+        Return (cycle, millis()) after each run of the core's timer 0 interrupt.
+
+        The core counts 1024 us for each overflow: 1 ms, and one more whenever the remaining
+        24 us have added up to a millisecond (wiring.c: FRACT_INC 3 of FRACT_MAX 125 at 16 MHz).
+        """
+        ticks = []
+        millis = fraction = 0
+        for cycle in self._of(Kind.ISR_EXIT, vector)["cycle"].tolist():
+            millis += 1
+            fraction += 3
+            if fraction >= 125:  # noqa: PLR2004 - wiring.c
+                fraction -= 125
+                millis += 1
+            ticks.append((cycle, millis))
+        return ticks
+
+    def commit(self, begin: int, end: int, which: int = 0) -> tuple[int, int] | None:
+        """
+        Return first and last cycle of the section with interrupts off, number *which*, of a call.
+        """
+        low = bisect_left(self.masked, begin)
+        if low + which >= len(self.masked) or self.masked[low + which] > end:
+            return None
+        start = self.masked[low + which]
+        return start, self.unmasked[bisect_left(self.unmasked, start)]
