@@ -9,6 +9,7 @@ unless every spec is fine and every target may be replaced.
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from stepgen.errors import Fault, StepgenError
 from stepgen.library.render import render_library
@@ -24,6 +25,13 @@ from stepgen.library.write import (
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
 from stepgen.spec import LoadedSpec, load_spec
+
+if TYPE_CHECKING:
+    from stepgen.verify.report import SpecReport
+    from stepgen.verify.runner import Outcome
+
+TrackScenarios = Callable[[Sequence[Any]], Iterable[Any]]
+"""Passes the scenarios of a verification on one by one, to show progress."""
 
 Track = Callable[[Sequence[Path]], Iterable[Path]]
 """Passes the specs on one by one, to show progress; such as ``rich.progress.track``."""
@@ -155,6 +163,50 @@ def check(
             else check_library(library.files, target)
         )
     return found
+
+
+def verify(
+    path: Path, *, compiler: str | None = None, track: TrackScenarios = iter
+) -> "SpecReport":
+    """
+    Prove the library of the spec in *path*: compile, simulate, compare with the model, measure.
+
+    Args:
+        path: The spec.
+        compiler: ``gcc-5.4`` or ``gcc-7.3``; without it the avr-gcc on the PATH.
+        track: Shows progress; passes the scenarios on one by one.
+
+    Raises:
+        StepgenError: The spec is refused, a tool is missing, the library does not compile, or
+            its firmware crashes.
+    """
+    from stepgen.verify.toolchain import (  # noqa: PLC0415 - generating needs no simulator
+        compiler_named,
+        default_compiler,
+    )
+    from stepgen.verify.verification import verify_spec  # noqa: PLC0415 - the same
+
+    chosen = compiler_named(compiler) if compiler else default_compiler()
+    return verify_spec(load_spec(path), chosen, track=track)
+
+
+def simulate(
+    path: Path, scenario: Path | None = None, *, compiler: str | None = None
+) -> "tuple[Plan, Outcome]":
+    """
+    Run one scenario of the spec in *path* on a simulated chip.
+
+    Args:
+        path: The spec.
+        scenario: A YAML file with calls and waits; without it a few steps there and back.
+        compiler: As of `verify`.
+
+    Raises:
+        StepgenError: As of `verify`, and the faults of the scenario.
+    """
+    from stepgen.verify.simulation import simulate_spec  # noqa: PLC0415 - the same as in verify
+
+    return simulate_spec(load_spec(path), scenario, compiler)
 
 
 def _several(paths: Path | Sequence[Path]) -> Sequence[Path]:

@@ -44,7 +44,6 @@ def _library_rows(decided: Plan) -> Iterable[Row]:
     yield ("uses", ", ".join(decided.uses) or "no other library")
     yield ("shortest period", _period(decided.minimum_period_cycles, clock_hz))
     yield ("longest period", _period(decided.largest_period_cycles, clock_hz))
-    yield ("longest step interrupt", f"at most {decided.isr_bound_cycles} cycles")
 
 
 def _period(cycles: int, clock_hz: int) -> str:
@@ -64,6 +63,7 @@ def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
     yield ("steps per turn", _turn(motor))
     yield ("at rest", "coils off" if motor.releases_at_rest else "coils hold")
     yield ("step interrupt", f"{path.usual_cycles} cycles, response to RETI")
+    yield ("at a boundary", f"at most {motor.isr_bound_cycles} cycles")
     yield (
         "until the edge",
         f"{path.edge_cycles} cycles, {path.boundary_edge_cycles} at a boundary",

@@ -5,9 +5,11 @@ What the commands print: faults like a good compiler's, tables that also fit a p
 import os
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import typer
 
@@ -127,9 +129,21 @@ def track(paths: Sequence[Path]) -> Iterable[Path]:
     """
     if len(paths) == 1:
         return iter(paths)
+    return _bar(paths, "Generating")
+
+
+@contextmanager
+def progress(title: str) -> Iterator[Callable[[Any], Iterable[Any]]]:
+    """
+    Lend a function that passes items on with a progress bar called *title*.
+    """
+    yield lambda items: _bar(items, title)
+
+
+def _bar(items: Any, title: str) -> Iterable[Any]:  # noqa: ANN401 - passes anything on
     from rich.console import Console  # noqa: PLC0415 - rich is slow to import
     from rich.progress import track as rich_track  # noqa: PLC0415 - the same
 
     console = Console(stderr=True)
     shown = console.is_terminal
-    return rich_track(paths, "Generating", console=console, transient=True, disable=not shown)
+    return rich_track(items, title, console=console, transient=True, disable=not shown)

@@ -5,7 +5,7 @@ The view of a kernel: its tables and port writes as finished C++ text.
 from dataclasses import dataclass
 
 from stepgen.devices import Mcu
-from stepgen.library.text import hexadecimal
+from stepgen.library.text import comment_lines, hexadecimal, listed
 from stepgen.plan.coils import Wire, bits_by_port
 from stepgen.plan.kernels import Kernel, PortWrite, Ring, Toggle
 
@@ -43,7 +43,7 @@ class RingView:
     What the partial ``ring`` prints.
     """
 
-    columns: str
+    legend: tuple[str, ...]
     alignment: int
     rows: tuple[str, ...]
     writes: tuple[str, ...]
@@ -93,9 +93,13 @@ def _toggle_view(kernel: Toggle) -> ToggleView:
 
 
 def _ring_view(kernel: Ring) -> RingView:
-    columns = ", ".join(_column(write) for write in kernel.writes)
+    columns = listed([_column(write) for write in kernel.writes])
+    legend = (
+        "Two rows for each phase: for going on forward and for going on backward. A row begins "
+        f"with the distance of the row that follows; then comes {columns}."
+    )
     return RingView(
-        columns=columns,
+        legend=comment_lines(legend),
         alignment=kernel.alignment_bytes,
         rows=tuple(_row(index, row) for index, row in enumerate(kernel.rows)),
         writes=tuple(_write(index, write) for index, write in enumerate(kernel.writes, start=1)),

@@ -2,13 +2,15 @@
 From a view to the files of the library, as text.
 """
 
+import re
 from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2.ext import Extension
 
-from stepgen.library.text import block, c_comment, c_string, properties_value
+from stepgen.library.text import block, c_comment, c_string, properties_value, tidy
 from stepgen.library.view import LibraryView, make_view
 from stepgen.plan.model import Plan
 
@@ -27,6 +29,22 @@ _FILES = {
 }
 
 
+class KeepEmptyLines(Extension):
+    """
+    Keeps the empty lines that follow a control line, which Jinja would swallow with it.
+
+    So a template shows what it prints.
+    """
+
+    _AFTER_CONTROL = re.compile(r"^([ \t]*%%[^\n]*\n)(?=[ \t]*\n)", re.MULTILINE)
+
+    def preprocess(self, source: str, name: str | None, filename: str | None = None) -> str:  # noqa: ARG002 - Jinja's signature
+        """
+        Return *source* with an empty expression in each of those lines.
+        """
+        return self._AFTER_CONTROL.sub(r"\1{{ '' }}", source)
+
+
 def template_dir() -> Path:
     """
     Return the folder of the templates: beside the package in a checkout, inside it in a wheel.
@@ -43,6 +61,7 @@ def environment(templates: Path | None = None) -> Environment:
     made = Environment(
         loader=FileSystemLoader(templates or template_dir()),
         undefined=StrictUndefined,
+        extensions=[KeepEmptyLines],
         keep_trailing_newline=True,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -73,7 +92,7 @@ def render_library(plan: Plan, spec_text: str, templates: Path | None = None) ->
     view = make_view(plan, spec_hash(spec_text))
     context = {"library": view, **_partials(made, view)}
     rendered = {
-        path.format(name=view.name): made.get_template(template).render(context)
+        path.format(name=view.name): tidy(made.get_template(template).render(context))
         for path, template in _FILES.items()
     }
     rendered["extras/spec.yaml"] = spec_text

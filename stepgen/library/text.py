@@ -4,7 +4,11 @@ The only doors through which text of a spec reaches the output.
 
 import json
 import re
-from textwrap import indent
+from collections.abc import Sequence
+from textwrap import indent, wrap
+
+LINE_WIDTH = 100
+_COMMENT_WIDTH = LINE_WIDTH - len("// ")
 
 
 def c_comment(text: str) -> str:
@@ -34,6 +38,29 @@ def block(text: str, width: int = 0) -> str:
     Return *text* indented by *width* spaces, without the line end that follows its last line.
     """
     return indent(text.rstrip("\n"), " " * width)
+
+
+def comment_lines(text: str) -> tuple[str, ...]:
+    """
+    Return *text* as lines of a ``//`` comment, each within the line width.
+    """
+    return tuple(c_comment(line) for line in wrap(c_comment(text), _COMMENT_WIDTH))
+
+
+def tidy(text: str) -> str:
+    """
+    Return *text* with no blanks at line ends, no two empty lines in a row, one line end at its end.
+    """
+    lines = re.sub(r"[ \t]+$", "", text, flags=re.MULTILINE)
+    return re.sub(r"\n{3,}", "\n\n", lines).strip("\n") + "\n"
+
+
+def listed(names: Sequence[str], conjunction: str = "and") -> str:
+    """
+    Return *names*, at least one, as prose: ``B``, ``B and E``, ``B, E and H``.
+    """
+    *first, last = names
+    return f"{', '.join(first)} {conjunction} {last}" if first else last
 
 
 def hexadecimal(value: int) -> str:

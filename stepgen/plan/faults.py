@@ -39,4 +39,4 @@ class Faults:
             StepgenError: There is at least one.
         """
         if self.found:
-            raise StepgenError(sorted(set(self.found), key=lambda fault: fault.position))
+            raise StepgenError(sorted(set(self.found), key=lambda fault: (fault.position, fault)))

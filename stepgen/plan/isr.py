@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from stepgen.devices import Mcu, Port, Register
-from stepgen.plan.kernels import Kernel, Ring, Toggle
+from stepgen.plan.kernels import Kernel, PortWrite, Ring, Toggle
 
 _VECTOR_JUMP_CYCLES = 3  # the JMP in the vector table
 
@@ -119,7 +119,7 @@ def compose(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str) -> HotPath
         storage.count.load("r24", "count"),
         Instruction("dec   r24", 1, "one step less until the next boundary"),
         storage.count.store("r24", "count"),
-        Instruction("breq  1f", 1, "every 255 steps, and when a command begins or ends"),
+        Instruction("breq  1f", 1, "each 255 steps, and where a move begins or ends"),
     )
     step = (
         *(Instruction(f"push  {register}", 2) for register in saved),
@@ -209,7 +209,7 @@ def _ring_step(kernel: Ring, storage: Storage) -> tuple[Instruction, ...]:
         operand = f"%[port{_port_index(kernel, write.port)}]"
         lines.append(Instruction(f"lpm   r24, Z{'+' if write != kernel.writes[-1] else ''}", 3))
         lines.append(Instruction(f"{access.load}r25, {operand}", access.cycles))
-        lines.extend(_COMBINE[write.operation](write.mask))
+        lines.extend(_combine(write))
         note = f"{write.port.letter}: {_WRITE_NOTES[write.operation]}"
         lines.append(Instruction(f"{access.store}{operand}, r25", access.cycles, note))
     return tuple(lines)
@@ -231,14 +231,12 @@ def _port_index(kernel: Ring, port: Port) -> int:
     return [share.port for share in kernel.ports].index(port)
 
 
-_COMBINE = {
-    "clear": lambda _: (Instruction("and   r25, r24", 1),),
-    "set": lambda _: (Instruction("or    r25, r24", 1),),
-    "merge": lambda mask: (
-        Instruction(f"andi  r25, {~mask & 0xFF:#04x}", 1),
-        Instruction("or    r25, r24", 1),
-    ),
-}
+def _combine(write: PortWrite) -> tuple[Instruction, ...]:
+    keep = Instruction(f"andi  r25, {~write.mask & 0xFF:#04x}", 1)
+    clear, add = Instruction("and   r25, r24", 1), Instruction("or    r25, r24", 1)
+    return {"clear": (clear,), "set": (add,), "merge": (keep, add)}[write.operation]
+
+
 _WRITE_NOTES = {
     "clear": "coils that end go off",
     "merge": "off and on at once",

@@ -12,6 +12,22 @@ _RING_BYTES = 256  # a row is named by one byte: its distance from the start of 
 
 
 @dataclass(frozen=True)
+class HandlerCycles:
+    """
+    How long the boundary handler takes, as measured with both compilers on both chips.
+
+    Args:
+        longest: With everything at once, to the end of RETI; a bound that verification checks.
+        to_clock: Until it starts the clock of a timer that it sets anew.
+        to_clock_thinking: The same when it looked at the clock and made the step itself.
+    """
+
+    longest: int
+    to_clock: int
+    to_clock_thinking: int
+
+
+@dataclass(frozen=True)
 class Toggle:
     """
     Each step toggles one of two groups of bits in turn, by one write of ones to PINx.
@@ -28,6 +44,7 @@ class Toggle:
 
     kind = "toggle"
     state_note = "the bits that the next step toggles"
+    handler = HandlerCycles(longest=134, to_clock=64, to_clock_thinking=84)
 
     @property
     def both(self) -> int:
@@ -63,6 +80,14 @@ class Ring:
 
     kind = "ring"
     state_note = "the row of the present phase"
+
+    @property
+    def handler(self) -> HandlerCycles:
+        """
+        Return the cycles of the boundary handler, which makes a step itself when it thinks.
+        """
+        thinking = 92 + 11 * len(self.writes)
+        return HandlerCycles(longest=148, to_clock=69, to_clock_thinking=thinking)
 
     @property
     def row_bytes(self) -> int:

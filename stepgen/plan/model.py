@@ -11,10 +11,6 @@ from stepgen.plan.isr import HotPath, Storage
 from stepgen.plan.kernels import Kernel
 from stepgen.spec import Library
 
-HANDLER_BOUND_CYCLES = 145  # the handler of the rare ways, with all of them at once
-_RETIME_CYCLES = 64  # of the boundary handler until it starts the clock, as measured
-_THINKING_CYCLES = 20  # more, when it looks at the clock and makes the step itself
-
 
 @dataclass(frozen=True)
 class Setting:
@@ -80,21 +76,21 @@ class MotorPlan:
         """
         Return the cycles from a due step until the boundary handler has set the timer anew.
         """
-        return self.hot_path.boundary_entry_cycles + _RETIME_CYCLES
+        return self.hot_path.boundary_entry_cycles + self.kernel.handler.to_clock
 
     @property
     def elapsed_thinking_cycles(self) -> int:
         """
         Return the same where the handler itself made the step, because of a millisecond limit.
         """
-        return self.hot_path.think_entry_cycles + _THINKING_CYCLES + _RETIME_CYCLES
+        return self.hot_path.think_entry_cycles + self.kernel.handler.to_clock_thinking
 
     @property
     def isr_bound_cycles(self) -> int:
         """
         Return the longest that its step interrupt may take, from the response through RETI.
         """
-        return self.hot_path.boundary_entry_cycles + HANDLER_BOUND_CYCLES
+        return self.hot_path.boundary_entry_cycles + self.kernel.handler.longest
 
     @property
     def port_letters(self) -> str:
@@ -113,7 +109,7 @@ class Plan:
         library: The metadata of the library.
         board: The board.
         motors: Its motors, in the order of the spec.
-        isr_bound_cycles: Longest step interrupt of any motor, response to RETI.
+        masked_bound_cycles: Longest stretch of a call of the library with interrupts off.
         minimum_period_cycles: Shortest time between two steps that any motor may be given.
         largest_period_cycles: Longest time between two steps.
         uses: The other libraries of the sketch.
@@ -122,7 +118,7 @@ class Plan:
     library: Library
     board: Board
     motors: tuple[MotorPlan, ...]
-    isr_bound_cycles: int
+    masked_bound_cycles: int
     minimum_period_cycles: int
     largest_period_cycles: int
     uses: tuple[str, ...]

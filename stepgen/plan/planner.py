@@ -23,9 +23,8 @@ from stepgen.plan.timings import plan_timing
 from stepgen.plan.timings.fast_pwm import LARGEST_PERIOD_CYCLES
 from stepgen.spec import LoadedSpec, Motor
 
-ISR_BOUND_CYCLES = 170  # the longest step interrupt; verification measures it
 _OTHER_INTERRUPTS_CYCLES = 110  # the core's millis interrupt
-_MASKED_CYCLES = 150  # the longest stretch of the library's own calls with interrupts off
+_MASKED_CYCLES = 260  # the longest stretch of the library's own calls with interrupts off
 _SMALLEST_PERIOD_CYCLES = 640  # system 1: 25 000 steps/s at 16 MHz
 
 
@@ -57,25 +56,27 @@ def make_plan(loaded: LoadedSpec) -> Plan:
         for (name, motor), storage in zip(spec.motors.items(), storages, strict=True)
     ]
     faults.raise_if_any()
+    planned = tuple(motor for motor in motors if motor)
     return Plan(
         library=spec.library,
         board=board,
-        motors=tuple(motor for motor in motors if motor),
-        isr_bound_cycles=ISR_BOUND_CYCLES,
-        minimum_period_cycles=_minimum_period_cycles(len(motors)),
+        motors=planned,
+        masked_bound_cycles=_MASKED_CYCLES,
+        minimum_period_cycles=_minimum_period_cycles(planned),
         largest_period_cycles=LARGEST_PERIOD_CYCLES,
         uses=spec.uses,
     )
 
 
-def _minimum_period_cycles(motors: int) -> int:
+def _minimum_period_cycles(motors: tuple[MotorPlan, ...]) -> int:
     """
     Return the shortest period in which no overflow can be missed.
 
     The timer keeps one overflow that waits, not two. The longest wait is every other
     interrupt once, a call of the library with interrupts off, and the step itself.
     """
-    longest_wait = motors * ISR_BOUND_CYCLES + _OTHER_INTERRUPTS_CYCLES + _MASKED_CYCLES
+    steps = sum(motor.isr_bound_cycles for motor in motors)
+    longest_wait = steps + _OTHER_INTERRUPTS_CYCLES + _MASKED_CYCLES
     return max(_SMALLEST_PERIOD_CYCLES, longest_wait)
 
 

@@ -2,6 +2,7 @@
 The YAML of a spec: read once, with the place of every value.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,7 @@ from stepgen.errors import StepgenError
 Location = Sequence[str | int]
 MAXIMUM_BYTES = 256 * 1024
 MAXIMUM_DEPTH = 12
+_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]+")  # would make a mess of a terminal
 
 
 @dataclass(frozen=True)
@@ -47,17 +49,18 @@ class Document:
             line, column = mark
             node = node[step]
             on_key = isinstance(node, CommentedBase)
-        text = "" if on_key else f"{_scalar(node)!s:.80}"
-        return f"{self.path}:{line + 1}:{column + 1}", text
+        text = "" if on_key or node is None else f"{_scalar(node)!s:.80}"
+        return f"{self.path}:{line + 1}:{column + 1}", _CONTROL.sub(" ", text)
 
 
 def _mark(node: object, step: str | int) -> tuple[int, int] | None:
+    mark: tuple[int, int] | None = None
     if isinstance(node, CommentedMap) and step in node:
-        simple = not isinstance(node[step], CommentedBase)
-        return node.lc.value(step) if simple else node.lc.key(step)
-    if isinstance(node, CommentedSeq) and isinstance(step, int) and step < len(node):
-        return node.lc.item(step)
-    return None
+        on_key = node[step] is None or isinstance(node[step], CommentedBase)
+        mark = node.lc.key(step) if on_key else node.lc.value(step)
+    elif isinstance(node, CommentedSeq) and isinstance(step, int) and step < len(node):
+        mark = node.lc.item(step)
+    return mark
 
 
 def read_document(path: Path) -> Document:
@@ -82,7 +85,7 @@ def read_document(path: Path) -> Document:
             "holds no spec; a spec begins with `library:`, `board:` and `motors:`",
             place=f"{path}:1:1",
         )
-    return Document(path, text, _plain(tree, path), tree)
+    return Document(path, text, _plain(tree, path, (0, 0)), tree)
 
 
 def _read_text(path: Path) -> str:
@@ -111,20 +114,38 @@ def _yaml_problem(error: MarkedYAMLError) -> str:
     return f"is no YAML: {problem}"
 
 
-def _plain(node: Any, path: Path, depth: int = 0) -> Any:  # noqa: ANN401 - YAML is any data
+def _plain(
+    node: Any,  # noqa: ANN401 - YAML is any data
+    path: Path,
+    mark: tuple[int, int],
+    depth: int = 0,
+) -> Any:  # noqa: ANN401 - YAML is any data
     """
-    Return *node* as dicts, lists and scalars of Python's own types.
+    Return *node*, which stands at *mark*, as dicts, lists and scalars of Python's own types.
     """
+    place = f"{path}:{mark[0] + 1}:{mark[1] + 1}"
     if depth > MAXIMUM_DEPTH:
-        raise StepgenError.of("is nested too deeply for a spec", place=str(path))
-    if isinstance(node, CommentedBase) and (node.tag.value or node.anchor.value):
-        where = f"{path}:{node.lc.line + 1}:{node.lc.col + 1}"
-        raise StepgenError.of("tags and anchors have no use in a spec; remove it", place=where)
-    if isinstance(node, dict):
-        return {_scalar(key): _plain(value, path, depth + 1) for key, value in node.items()}
-    if isinstance(node, list):
-        return [_plain(value, path, depth + 1) for value in node]
+        raise StepgenError.of("is nested too deeply for a spec; remove a level", place=place)
+    if _is_marked(node):
+        raise StepgenError.of("tags and anchors have no use in a spec; remove it", place=place)
+    if isinstance(node, CommentedMap):
+        return {
+            _scalar(key): _plain(value, path, node.lc.value(key), depth + 1)
+            for key, value in node.items()
+        }
+    if isinstance(node, CommentedSeq):
+        return [
+            _plain(value, path, node.lc.item(index), depth + 1) for index, value in enumerate(node)
+        ]
     return _scalar(node)
+
+
+def _is_marked(node: Any) -> bool:  # noqa: ANN401 - YAML is any data
+    """
+    Tell whether *node* has a tag or an anchor, or takes over what stands elsewhere (``<<``).
+    """
+    marks = (getattr(getattr(node, name, None), "value", None) for name in ("tag", "anchor"))
+    return any(marks) or bool(getattr(node, "merge", None))
 
 
 def _scalar(value: Any) -> Any:  # noqa: ANN401 - YAML is any data

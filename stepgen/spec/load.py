@@ -4,13 +4,51 @@ From a YAML file to a Spec, with every fault at its line.
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeGuard, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from stepgen.errors import Fault, StepgenError
 from stepgen.spec.document import Document, Location, read_document
-from stepgen.spec.model import Spec
+from stepgen.spec.model import SHORT_FORMS, Spec
+
+# What pydantic finds -> what is wrong and what to do. Of an entry of a list:
+_ENTRY_REASONS = {"missing": "has too few entries; give one for each wire"}
+# Of a certain field:
+_FIELD_REASONS = {
+    ("too_short", "pins"): "has too few entries; give one for each wire",
+    ("too_long", "pins"): "has too many entries; give one for each wire",
+    (
+        "too_short",
+        "motors",
+    ): "motors is empty; add a motor, such as `motor: {{drive: motor-shield}}`",
+    ("string_pattern_mismatch", "version"): (
+        "is no version; write three numbers in quotes, such as 1.0.0"
+    ),
+    ("string_type", "version"): "is no version; write three numbers in quotes, such as 1.0.0",
+    ("string_type", "[key]"): "is no name; write one that begins with a letter, such as pan",
+    ("missing", "pins"): "pins is missing; add `pins: [...]`, those of the coils A, B, C and D",
+    ("model_type", "steps_per_turn"): (
+        "is no number of steps; write a whole number such as 200, or full_steps and gear"
+    ),
+}
+# Of any field:
+_REASONS = {
+    "missing": "{field} is missing; add `{field}: ...`",
+    "extra_forbidden": "{field} is no field of this part of a spec; remove it or correct its name",
+    "value_error": "{error}",
+    "model_type": "{field} needs fields of its own; write them indented below it",
+    "dict_type": "{field} needs fields of its own; write them indented below it",
+    "string_type": "{field} must be text; put it in quotes",
+    "int_type": "{field} must be a whole number",
+    "literal_error": "is not possible for {field}; write {expected}",
+    "union_tag_invalid": '"{tag}" is unknown; choose one of {expected_tags}',
+    "union_tag_not_found": "has no kind; add `kind: ...`",
+    "string_pattern_mismatch": "{field} must be one line of text without control characters",
+}
+
+Model = TypeVar("Model", bound=BaseModel)
 
 
 @dataclass(frozen=True)
@@ -37,13 +75,23 @@ def load_spec(path: Path) -> LoadedSpec:
     Raises:
         StepgenError: All faults of the spec, each with its place and a way out.
     """
+    document, spec = load_model(path, Spec)
+    return LoadedSpec(spec, document)
+
+
+def load_model(path: Path, model: type[Model]) -> tuple[Document, Model]:
+    """
+    Load the YAML file *path* as a *model*.
+
+    Raises:
+        StepgenError: All faults of the file, each with its place and a way out.
+    """
     document = read_document(path)
     try:
-        spec = Spec.model_validate(dict(document.data))
+        return document, model.model_validate(dict(document.data))
     except ValidationError as error:
         faults = {_fault(document, details) for details in error.errors(include_url=False)}
-        raise StepgenError(sorted(faults, key=lambda fault: fault.position)) from None
-    return LoadedSpec(spec, document)
+        raise StepgenError(sorted(faults, key=lambda fault: (fault.position, fault))) from None
 
 
 def _in_yaml(location: Location, document: Document) -> Location:
@@ -55,21 +103,22 @@ def _in_yaml(location: Location, document: Document) -> Location:
     """
     node: object = document.data
     kept: list[str | int] = []
-    for step in location:
-        if isinstance(node, dict) and step not in node:
+    for index, step in enumerate(location):
+        if not _has(node, step):
             continue
-        if isinstance(node, dict) or (
-            isinstance(node, list) and isinstance(step, int) and step < len(node)
-        ):
-            following = node[step]
-        else:
-            continue
-        is_short = isinstance(following, str) and step != location[-1] and isinstance(node, dict)
-        if is_short and location[-1] in node:
+        following = node[step]
+        short = [name for name in location[index + 1 :] if name in SHORT_FORMS]
+        if any(_has(node, name) and not _has(following, name) for name in short):
             continue
         kept.append(step)
         node = following
     return kept
+
+
+def _has(node: object, step: str | int) -> TypeGuard[Any]:
+    if isinstance(node, list):
+        return isinstance(step, int) and step < len(node)
+    return isinstance(node, dict) and step in node
 
 
 def _fault(document: Document, details: ErrorDetails) -> Fault:
@@ -78,28 +127,14 @@ def _fault(document: Document, details: ErrorDetails) -> Fault:
 
 
 def _reason(details: ErrorDetails) -> str:
-    field = details["loc"][-1] if details["loc"] else "the spec"
-    context = details.get("ctx", {})
-    match details["type"]:
-        case "missing" | "too_short" if isinstance(field, int) or field == "pins":
-            return "has too few entries; give one for each wire"
-        case "too_long":
-            return "has too many entries; give one for each wire"
-        case "missing":
-            return f"{field} is missing; add `{field}: ...`"
-        case "extra_forbidden":
-            return f"{field} is no field of this part of a spec; remove it or correct its name"
-        case "value_error":
-            return str(context["error"])
-        case "literal_error" | "enum":
-            return f"is not possible for {field}; write {context['expected']}"
-        case "union_tag_invalid":
-            return f'"{context["tag"]}" is unknown; choose one of {context["expected_tags"]}'
-        case "union_tag_not_found":
-            return "has no kind; add `kind: ...`"
-        case "string_pattern_mismatch" if field == "version":
-            return "is no version; write three numbers in quotes, such as 1.0.0"
-        case "string_pattern_mismatch":
-            return f"{field} must be one line of text without control characters"
-        case _:
-            return f"{field}: {details['msg'][0].lower()}{details['msg'][1:]}"
+    """
+    Return what is wrong and the way out, from the table for the kind of fault and its field.
+    """
+    kind = details["type"]
+    names = [part for part in details["loc"] if isinstance(part, str)]
+    field = names[-1] if names else "the spec"
+    is_entry = names != list(details["loc"])
+    message = details["msg"][:1].lower() + details["msg"][1:]
+    reason = _ENTRY_REASONS.get(kind) if is_entry else None
+    reason = reason or _FIELD_REASONS.get((kind, field)) or _REASONS.get(kind, "{field}: {message}")
+    return reason.format(field=field, message=message, **details.get("ctx", {}))

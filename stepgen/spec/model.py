@@ -5,7 +5,14 @@ The spec: a board, its motors and the library's metadata, each with its local ru
 import re
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, StringConstraints, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    StringConstraints,
+    field_validator,
+    model_validator,
+)
 
 from stepgen.spec.base import SpecModel
 from stepgen.spec.drives import Drive
@@ -15,7 +22,7 @@ from stepgen.spec.turns import Steps
 
 _LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
-_SHORT_FORMS = {"timer": "timing", "pins": "drive", "sequence": "drive"}
+SHORT_FORMS = {"timer": "timing", "pins": "drive", "sequence": "drive"}
 _DEFAULT_KINDS = {"timing": "fast-pwm", "motion": "constant"}
 _CATEGORIES = Literal[
     "Display",
@@ -70,7 +77,7 @@ def _long_form(value: Any) -> Any:  # noqa: ANN401 - whatever the YAML held
     if not isinstance(value, dict):
         return value
     long = dict(value)
-    for short, part in _SHORT_FORMS.items():
+    for short, part in SHORT_FORMS.items():
         if short not in long:
             continue
         inner = long.get(part, _DEFAULT_KINDS.get(part))
@@ -100,6 +107,18 @@ class Motor(SpecModel):
     port: Literal["shared", "owned"] = "shared"
 
 
+def _motor_name(name: str) -> str:
+    if not _MOTOR_NAME.fullmatch(name):
+        raise ValueError(
+            f'"{name[:80]}" names no motor: it begins each of its functions, so use a '
+            "lower-case letter followed by at most 30 letters or digits, such as pan"
+        )
+    return name
+
+
+MotorName = Annotated[str, AfterValidator(_motor_name)]
+"""A motor's name, from which the names of its functions are made."""
+
 MotorEntry = Annotated[Motor, BeforeValidator(_long_form)]
 
 
@@ -110,21 +129,16 @@ class Spec(SpecModel):
 
     library: Annotated[Library, BeforeValidator(_as_library)]
     board: str
-    motors: Annotated[dict[str, MotorEntry], Field(min_length=1)]
+    motors: Annotated[dict[MotorName, MotorEntry], Field(min_length=1)]
     uses: Annotated[tuple[str, ...], Field(strict=False)] = ()
 
-    @model_validator(mode="after")
-    def _motor_names_make_function_names(self) -> Self:
-        for name in self.motors:
-            if not _MOTOR_NAME.fullmatch(name):
-                raise ValueError(
-                    f'"{name[:80]}" names no motor: it begins each of its functions, so use a '
-                    "lower-case letter followed by at most 30 letters or digits, such as pan"
-                )
-        lower = [name.lower() for name in self.motors]
+    @field_validator("motors")
+    @classmethod
+    def _motor_names_differ(cls, motors: dict[str, Motor]) -> dict[str, Motor]:
+        lower = [name.lower() for name in motors]
         if len(set(lower)) < len(lower):
             raise ValueError(
                 "two motors have names that differ in case only; their constants would collide, "
                 "so rename one of them"
             )
-        return self
+        return motors

@@ -2,16 +2,14 @@
 The test bench: a sketch that does what a mailbox in RAM says, on a simulated chip.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from pathlib import Path
 from struct import Struct
 from typing import Self
 
-from stepgen.devices import Timer16
 from stepgen.errors import StepgenError
-from stepgen.plan.model import MotorPlan, Plan
+from stepgen.plan.model import Plan
 from stepgen.verify.simavr import Machine
 from stepgen.verify.simavr.events import Events
 
@@ -83,11 +81,11 @@ class Bench:
 
     def __post_init__(self) -> None:
         mcu = self.plan.board.mcu
-        watched = [
-            address for motor in self.plan.motors for address in _watched(motor.timing.timer)
-        ]
         self.machine = Machine(
-            self.elf, mcu=mcu.name, f_cpu_hz=self.plan.board.f_cpu_hz, watch=watched
+            self.elf,
+            mcu=mcu.name,
+            f_cpu_hz=self.plan.board.f_cpu_hz,
+            watch=watched_registers(self.plan),
         )
         self._mailbox = self.machine.symbol("mailbox")
         if not self.machine.run_until_mark(_MARK_READY, limit_cycles=_SETUP_CYCLES):
@@ -154,12 +152,13 @@ class Bench:
             self.machine.run_until(self.machine.cycle + 1)
 
 
-def _watched(timer: Timer16) -> Sequence[int]:
-    return (timer.tccrb.address, timer.tcnt.address, timer.tcnt.address + 1)
-
-
-def step_vector(motor: MotorPlan, plan: Plan) -> int:
+def watched_registers(plan: Plan) -> list[int]:
     """
-    Return the number of the vector that makes the steps of *motor*.
+    Return the data addresses whose writes tell when a motor's timer is started.
     """
-    return plan.board.mcu.vector(motor.timing.vector).number
+    timers = [motor.timing.timer for motor in plan.motors]
+    return [
+        address
+        for timer in timers
+        for address in (timer.tccrb.address, timer.tcnt.address, timer.tcnt.address + 1)
+    ]

@@ -3,70 +3,18 @@ The comparison: what a motor was seen to do against what the reference model say
 """
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 
-from stepgen.plan.model import MotorPlan, Plan
-from stepgen.reference.integer import MotorModel
-from stepgen.reference.stimuli import (
-    ClockOn,
-    Edge,
-    EdgeKind,
-    Hold,
-    Init,
-    MillisTick,
-    Release,
-    SetSpeed,
-    Stimulus,
-)
-from stepgen.verify.bench import Answer, CallKind
-from stepgen.verify.electrical import is_between
+from stepgen.plan.model import MotorPlan
+from stepgen.reference.stimuli import Edge, EdgeKind
+from stepgen.verify.electrical import Levels, is_between
+from stepgen.verify.oracle import Comparison, Oracle, Scene
 from stepgen.verify.subject import Subject
-from stepgen.verify.trace import PortState, Run, Trace
+from stepgen.verify.trace import PortState, Run
+
+__all__ = ["Comparison", "Scene", "compare"]
 
 _WAKE_CYCLES = 4  # more, when the interrupt wakes the chip from idle sleep
-_MOST_FINDINGS = 5
-
-
-@dataclass
-class Comparison:
-    """
-    How one motor did in one scenario.
-
-    Args:
-        motor: Its name.
-        findings: What differs from the model, in words; empty if nothing does.
-        steps: How many steps were compared.
-        jitter_cycles: The latest edge, counted from its deadline.
-        longest_isr_cycles: The longest run of its step interrupt.
-        isr_cycles: All runs together.
-    """
-
-    motor: str
-    findings: list[str] = field(default_factory=list)
-    steps: int = 0
-    jitter_cycles: int = 0
-    longest_isr_cycles: int = 0
-    isr_cycles: int = 0
-
-    def report(self, finding: str) -> None:
-        """
-        Note that something differs; after a few, more of them would tell nothing new.
-        """
-        if len(self.findings) < _MOST_FINDINGS:
-            self.findings.append(finding)
-
-
-@dataclass(frozen=True)
-class Scene:
-    """
-    A scenario's trace, its calls, and what they were compiled from.
-    """
-
-    trace: Trace
-    answers: Sequence[Answer]
-    plan: Plan
-    until_cycle: int
 
 
 def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
@@ -75,9 +23,9 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     """
     result = Comparison(subject.name)
     runs = scene.trace.runs(subject.vector)
-    edges = _Oracle(subject, index, scene, runs).predict(result)
+    edges = Oracle(subject, index, scene, runs).predict(result)
     _compare_steps(subject, scene, runs, edges, result)
-    _compare_calls(subject, scene, edges, result)
+    _compare_calls(subject, scene, runs, edges, result)
     _compare_strangers(subject, scene, runs, result)
     motor = scene.plan.motors[index]
     for run in runs:
@@ -85,149 +33,66 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     return result
 
 
-class _Oracle:
-    """
-    The reference model, fed with what happened on the chip and asked in the order of cycles.
-    """
-
-    def __init__(self, subject: Subject, index: int, scene: Scene, runs: list[Run]) -> None:
-        self._subject = subject
-        self._index = index
-        self._scene = scene
-        self._raised = [run.raised for run in runs]
-        self._runs = runs
-        self._model = MotorModel(subject.facts, self._service_cycle)
-
-    def _service_cycle(self, deadline: int) -> int:
-        place = bisect_left(self._raised, deadline)
-        if place < len(self._runs) and self._raised[place] == deadline:
-            return self._runs[place].entered
-        return deadline
-
-    def predict(self, result: Comparison) -> list[Edge]:
-        """
-        Return all edges of the model; report each code, status or position that differs.
-        """
-        edges: list[Edge] = []
-        for cycle, stimulus, answer in self._happenings():
-            edges.extend(self._model.advance(cycle - 1))
-            if stimulus is not None:
-                code = self._model.apply(stimulus)
-                if answer and code != answer.result:
-                    result.report(
-                        f"{answer.call} returned {answer.result}, the model says {int(code)}"
-                    )
-            elif answer:
-                edges.extend(self._model.advance(cycle))
-                self._compare_reading(cycle, answer, result)
-        edges.extend(self._model.advance(self._scene.until_cycle))
-        return edges
-
-    def _compare_reading(self, cycle: int, answer: Answer, result: Comparison) -> None:
-        status = int(self._model.status_at(cycle, self._millis))
-        if status != answer.status:
-            result.report(
-                f"status {answer.status:#04x} at cycle {cycle}, the model says {status:#04x}"
-            )
-        later = self._scene.trace.commit(answer.begin_cycle, answer.end_cycle, 1)
-        position = self._position_at(later[0] if later else cycle)
-        if answer.position not in {self._model.position, position}:
-            result.report(
-                f"position {answer.position} at cycle {cycle}, the model says {position}"
-            )
-
-    def _position_at(self, cycle: int) -> int:
-        self._pending = self._model.advance(cycle)
-        return self._model.position
-
-    def _happenings(self) -> Iterator[tuple[int, Stimulus | None, Answer | None]]:
-        """
-        Yield (cycle, stimulus or None for a reading, answer or None) in the order of effect.
-        """
-        trace, subject = self._scene.trace, self._subject
-        rows: list[tuple[int, int, Stimulus | None, Answer | None]] = []
-        for answer in self._scene.answers:
-            commit = trace.commit(answer.begin_cycle, answer.end_cycle)
-            if answer.call.motor == self._index and commit:
-                rows.append((commit[0], 1, _stimulus(answer, commit[0]), answer))
-        rows.extend(
-            (start.cycle, 2, ClockOn(start.cycle, start.prescaler, start.tcnt), None)
-            for start in trace.clock_starts(subject.tccrb, subject.tcnt)
-        )
-        vector = self._scene.plan.board.mcu.vector("TIMER0_OVF_vect").number
-        rows.extend(
-            (cycle, 0, MillisTick(cycle, millis), None)
-            for cycle, millis in trace.millis_ticks(vector)
-        )
-        self._millis = 0
-        for cycle, _, stimulus, answer in sorted(rows, key=lambda row: row[:2]):
-            if cycle > self._scene.until_cycle:
-                return
-            if isinstance(stimulus, MillisTick):
-                self._millis = stimulus.millis
-            yield cycle, stimulus, answer
-
-
-def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:
-    call = answer.call
-    match call.kind:
-        case CallKind.SET_SPEED:
-            return SetSpeed(cycle, call.control, call.top, call.limit)
-        case CallKind.HOLD:
-            return Hold(cycle)
-        case CallKind.RELEASE:
-            return Release(cycle)
-        case CallKind.INIT:
-            return Init(cycle)
-        case CallKind.READ:
-            return None
-
-
 def _compare_steps(
-    subject: Subject, scene: Scene, runs: list[Run], edges: list[Edge], result: Comparison
+    subject: Subject, scene: Scene, runs: Sequence[Run], edges: Sequence[Edge], result: Comparison
 ) -> None:
     """
     Compare each edge that an interrupt makes: its cycle, its pattern, and the way there.
     """
-    by_deadline = {run.raised: run for run in runs}
+    deadlines = {run.raised for run in runs}
+    _report_missing(scene, edges, deadlines, result)
+    expected = {edge.deadline_cycle: edge for edge in edges if edge.deadline_cycle in deadlines}
     ports = scene.trace.ports_at(runs[0].entered) if runs else {}
-    used = set()
-    expected = {edge.deadline_cycle: edge for edge in edges if edge.deadline_cycle in by_deadline}
-    for edge in edges:
-        is_missing = edge.kind is EdgeKind.STEP and edge.deadline_cycle not in by_deadline
-        if is_missing and edge.deadline_cycle + _grace(scene) < scene.until_cycle:
-            result.report(f"no step interrupt for the step due at cycle {edge.deadline_cycle}")
     events = iter(scene.trace.ports)
     upcoming = next(events, None)
     for run in runs:
         while upcoming and upcoming.cycle <= run.entered:
             ports[upcoming.port] = upcoming.value
             upcoming = next(events, None)
-        matching = expected.get(run.raised)
         before = subject.pattern(ports)
-        seen = _play(subject, ports, run.writes, result)
-        if matching is None:
-            if seen and seen[-1] != before:
-                result.report(f"a step at cycle {run.writes[-1].cycle} that nobody asked for")
-            continue
-        used.add(run.raised)
-        after = seen[-1] if seen else before
-        if not matching.pattern.allows(after):
-            result.report(
-                f"pattern {_text(after)} at cycle {run.entered}, the model says {matching.pattern}"
-            )
-        _check_way(subject, (before, *seen), result)
-        if matching.kind is EdgeKind.STEP and run.writes:
-            result.steps += 1
-            jitter = run.writes[-1].cycle - run.raised
-            result.jitter_cycles = max(result.jitter_cycles, jitter)
+        way = (before, *_play(subject, ports, run.writes, result))
+        edge = expected.get(run.raised)
+        if edge:
+            _compare_edge(subject, run, way, edge, result)
+        elif way[-1] != before:
+            result.report(f"a step at cycle {run.writes[-1].cycle} that nobody asked for")
+
+
+def _report_missing(
+    scene: Scene, edges: Sequence[Edge], deadlines: set[int], result: Comparison
+) -> None:
+    """
+    Report the steps of the model for which there was no interrupt.
+    """
+    last = scene.until_cycle - _grace(scene)
+    for edge in edges:
+        cycle = edge.deadline_cycle
+        if edge.kind is EdgeKind.STEP and cycle not in deadlines and cycle < last:
+            result.report(f"no step interrupt for the step due at cycle {cycle}")
+
+
+def _compare_edge(
+    subject: Subject, run: Run, way: Sequence[Levels], edge: Edge, result: Comparison
+) -> None:
+    """
+    Compare what *run* did, the patterns *way* from first to last, with the model's *edge*.
+    """
+    if not edge.pattern.allows(way[-1]):
+        result.report(
+            f"pattern {_text(way[-1])} at cycle {run.entered}, the model says {edge.pattern}"
+        )
+    _check_way(subject, way, result)
+    if edge.kind is EdgeKind.STEP and run.writes:
+        result.steps += 1
+        jitter = run.writes[-1].cycle - run.raised
+        result.jitter_cycles = max(result.jitter_cycles, jitter)
 
 
 def _grace(scene: Scene) -> int:
     """
     Return how long after its deadline a step at the very end of a trace may still come.
     """
-    return 2 * scene.plan.isr_bound_cycles
+    return 2 * max(motor.isr_bound_cycles for motor in scene.plan.motors)
 
 
 def _play(
@@ -250,7 +115,7 @@ def _play(
     return seen
 
 
-def _check_way(subject: Subject, way: Sequence[tuple[bool, ...]], result: Comparison) -> None:
+def _check_way(subject: Subject, way: Sequence[Levels], result: Comparison) -> None:
     for seen in way[1:-1]:
         if not is_between(subject, way[0], way[-1], seen):
             result.report(
@@ -260,11 +125,14 @@ def _check_way(subject: Subject, way: Sequence[tuple[bool, ...]], result: Compar
 
 
 def _compare_calls(
-    subject: Subject, scene: Scene, edges: list[Edge], result: Comparison
+    subject: Subject, scene: Scene, runs: Sequence[Run], edges: Sequence[Edge], result: Comparison
 ) -> None:
     """
     Compare the edges that calls make: the coils are on or off when the call lets go.
+
+    An edge that an interrupt makes can fall due in the very cycle of a call; it is none of these.
     """
+    deadlines = {run.raised for run in runs}
     commits = [
         commit
         for answer in scene.answers
@@ -273,7 +141,7 @@ def _compare_calls(
     ends = dict(commits)
     for edge in edges:
         end = ends.get(edge.deadline_cycle)
-        if end is None:
+        if end is None or edge.kind is EdgeKind.STEP or edge.deadline_cycle in deadlines:
             continue
         seen = subject.pattern(scene.trace.ports_at(end))
         if not edge.pattern.allows(seen):
@@ -283,9 +151,7 @@ def _compare_calls(
             )
 
 
-def _compare_strangers(
-    subject: Subject, scene: Scene, runs: list[Run], result: Comparison
-) -> None:
+def _compare_strangers(subject: Subject, scene: Scene, runs: list[Run], result: Comparison) -> None:
     """
     Report changes of the motor's wires outside its interrupt and outside the library's calls.
     """
@@ -318,9 +184,7 @@ def _check_run(run: Run, motor: MotorPlan, scene: Scene, result: Comparison) -> 
     result.longest_isr_cycles = max(result.longest_isr_cycles, length)
     result.isr_cycles += length
     if length > motor.isr_bound_cycles + _WAKE_CYCLES:
-        result.report(
-            f"a step interrupt of {length} cycles; its bound is {motor.isr_bound_cycles}"
-        )
+        result.report(f"a step interrupt of {length} cycles; its bound is {motor.isr_bound_cycles}")
 
 
 def _text(pattern: Sequence[bool]) -> str:

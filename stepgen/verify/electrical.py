@@ -17,7 +17,9 @@ def is_between(subject: Subject, old: Levels, new: Levels, seen: Levels) -> bool
     coil is off, or has the current that it has in *old* or in *new*.
     """
     if subject.is_shield:
-        return all(_coil(seen, coil) in (None, _coil(old, coil), _coil(new, coil)) for coil in (0, 1))
+        return all(
+            _coil(seen, coil) in (None, _coil(old, coil), _coil(new, coil)) for coil in (0, 1)
+        )
     return any(
         all(not now or allowed for now, allowed in zip(seen, pattern, strict=True))
         for pattern in (old, new)

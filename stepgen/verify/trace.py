@@ -67,7 +67,7 @@ class Trace:
     ports: list[PortState] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.events = np.sort(self.events, order="cycle", kind="stable")
+        self.events = self.events[np.argsort(self.events["cycle"], kind="stable")]
         letters = {port.port.address: port.letter for port in self.mcu.ports}
         rows = self._of(Kind.PORT)
         self.ports = [
@@ -83,7 +83,8 @@ class Trace:
         chosen = self.events["kind"] == kind
         if source is not None:
             chosen &= self.events["source"] == source
-        return self.events[chosen]
+        rows: Events = self.events[chosen]
+        return rows
 
     def runs(self, vector: int) -> list[Run]:
         """
@@ -163,4 +164,15 @@ class Trace:
         if low + which >= len(self.masked) or self.masked[low + which] > end:
             return None
         start = self.masked[low + which]
-        return start, self.unmasked[bisect_left(self.unmasked, start)]
+        following = bisect_left(self.unmasked, start)
+        return (start, self.unmasked[following]) if following < len(self.unmasked) else None
+
+    def masked_section(self, cycle: int) -> tuple[int, int] | None:
+        """
+        Return first and last cycle of the section with interrupts off around *cycle*, if any.
+        """
+        place = bisect_right(self.masked, cycle) - 1
+        if place < 0:
+            return None
+        section = self.commit(self.masked[place], cycle)
+        return section if section and section[1] >= cycle else None

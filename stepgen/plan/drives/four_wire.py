@@ -19,7 +19,7 @@ def plan(spec: FourWire, board: Board, faults: Faults) -> CoilDrive | None:
     """
     Return the four wires and their phases, or None when a pin is not on *board*.
     """
-    wires = []
+    wires: list[Wire] = []
     for index, name in enumerate(spec.pins):
         pin = board.find_pin(name)
         if pin is None:

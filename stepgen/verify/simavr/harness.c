@@ -1,5 +1,6 @@
 #include "harness.h"
 
+#include <simavr/avr_extint.h>
 #include <simavr/avr_ioport.h>
 #include <simavr/sim_core.h>
 #include <stdio.h>
@@ -75,6 +76,8 @@ machine *machine_new(const char *mcu, uint32_t f_cpu_hz, const uint8_t *code, ui
     interrupts_install(m);
     registers_install(m);
     serial_install(m);
+    for (uint8_t number = 0; number < EXTINT_COUNT; number++)
+        avr_extint_set_strict_lvl_trig(avr, number, 0); /* else a low INTn pin is polled each cycle */
     return m;
 }
 

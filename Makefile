@@ -1,0 +1,101 @@
+# Everything that people and CI run. The first run of a target installs what it needs: Debian
+# packages only where one is missing, Python packages into .venv only when pyproject.toml changed.
+
+PYTHON ?= python3
+JOBS ?= $(shell nproc)
+DEMO_SPEC := specs/uno_motor_shield.yaml
+
+# What verification needs of Debian; generating a library needs none of it.
+DEBIAN_PACKAGES := gcc-avr binutils-avr avr-libc simavr libsimavr-dev libelf-dev \
+	arduino-core-avr arduino-builder arduino-ctags gcc python3-dev python3-venv
+
+VENV := .venv
+BIN := $(VENV)/bin
+STAMPS := $(VENV)/stamps
+PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+# Installs the packages $(1), as root or with sudo.
+APT_INSTALL = as_root=; \
+	[ "$$(id -u)" -eq 0 ] || as_root=sudo; \
+	$$as_root apt-get update -qq && \
+	$$as_root env DEBIAN_FRONTEND=noninteractive \
+		apt-get install --yes -qq --no-install-recommends $(1)
+
+# The second compiler is used where pip put it, not copied into the home folder.
+export PYMCU_TOOLCHAIN_NO_SEEDING := 1
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+.PHONY: help demo test lint verify matrix generated campaign setup debian clean distclean
+
+help:  ## Show this list.
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
+
+demo: $(STAMPS)/runtime  ## Generate a first library into build/ and show it; needs no compiler.
+	$(BIN)/stepgen generate $(DEMO_SPEC) --output build
+	@echo && echo "The library:" && find build/ShieldMotor -type f | LC_ALL=C sort | sed 's/^/  /'
+	@echo && echo "Its README.md:" && sed 's/^/  /' build/ShieldMotor/README.md
+	@echo && echo "To use it, copy build/ShieldMotor into the libraries folder of your sketchbook."
+
+test: setup lint  ## Install what is missing, then run the linters and every test.
+	$(BIN)/pytest -n $(JOBS) -m "not campaign"
+
+lint: $(STAMPS)/dev  ## Run ruff and mypy.
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy --explicit-package-bases stepgen tests
+
+verify: setup  ## Compile, simulate and compare the library of each spec.
+	$(BIN)/stepgen verify specs/*.yaml
+
+matrix: setup  ## The same on every compiler, several at a time.
+	$(BIN)/stepgen matrix --jobs $(JOBS)
+
+campaign: setup  ## Run the long random campaigns, which `make test` leaves out.
+	$(BIN)/pytest -n $(JOBS) -m campaign
+
+generated: $(STAMPS)/runtime  ## Write the checked-in library of each spec again.
+	$(BIN)/stepgen check specs/*.yaml
+	rm -rf generated
+	$(BIN)/stepgen generate specs/*.yaml --output generated
+
+setup: debian $(STAMPS)/dev  ## Install what the tests need, and run nothing.
+
+clean:  ## Remove what was built; .venv stays.
+	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	find stepgen tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+distclean: clean  ## Remove .venv as well.
+	rm -rf $(VENV)
+
+debian:
+	@if ! command -v dpkg-query > /dev/null; then \
+		echo "This is no Debian: have these packages' like installed: $(DEBIAN_PACKAGES)"; \
+		exit 0; \
+	fi; \
+	missing=; \
+	for package in $(DEBIAN_PACKAGES); do \
+		dpkg-query -W -f '$${db:Status-Status}\n' $$package 2> /dev/null | grep -qx installed \
+			|| missing="$$missing $$package"; \
+	done; \
+	if [ -n "$$missing" ]; then \
+		echo "Installing$$missing"; \
+		$(call APT_INSTALL,$$missing); \
+	fi
+
+# Debian has the module venv in python3, but what it needs to make one in python3-venv.
+$(STAMPS)/venv:
+	@$(PYTHON) -c 'import ensurepip' 2> /dev/null || { $(call APT_INSTALL,python3-venv); }
+	$(PYTHON) -m venv $(VENV)
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/runtime: pyproject.toml | $(STAMPS)/venv
+	$(PIP_INSTALL) --editable .
+	@touch $@
+
+# --group came with pip 25.1; Debian 12's is older.
+$(STAMPS)/dev: pyproject.toml | $(STAMPS)/venv
+	$(PIP_INSTALL) --upgrade 'pip>=25.1'
+	$(PIP_INSTALL) --editable '.[verify]' --group dev
+	@touch $@ $(STAMPS)/runtime

@@ -1,0 +1,68 @@
+"""
+The view of a step interrupt: instructions and operands as finished assembler text.
+"""
+
+from dataclasses import dataclass
+
+from stepgen.plan.isr import Instruction, Place
+from stepgen.plan.kernels import Ring
+from stepgen.plan.model import MotorPlan
+
+THINK_BIT = 0
+_LINE_WIDTH = 31
+
+
+@dataclass(frozen=True)
+class Line:
+    """
+    An instruction as C text, and what stands behind it as a comment.
+    """
+
+    text: str
+    comment: str
+
+
+def instruction_lines(instructions: tuple[Instruction, ...]) -> tuple[Line, ...]:
+    """
+    Return *instructions* as the lines of an ``asm`` statement, each with its cycles and its note.
+    """
+    return tuple(_line(instruction) for instruction in instructions)
+
+
+def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
+    """
+    Return what the names in the instructions of *motor* stand for.
+    """
+    storage = motor.storage
+    operands = [
+        '[sreg] "I"(_SFR_IO_ADDR(SREG))',
+        _place_operand("scratch", storage.scratch),
+        _place_operand("count", storage.count),
+        _place_operand("state", storage.state),
+        f'[mode] "i"(&{motor.name}Mode)',
+        f'[think] "I"({THINK_BIT})',
+    ]
+    kernel = motor.kernel
+    if isinstance(kernel, Ring):
+        operands.append(f'[ring] "i"({motor.name}Ring)')
+        registers = [share.port.port for share in kernel.ports]
+    else:
+        registers = [kernel.port.pin]
+    for index, register in enumerate(registers):
+        access = '"I"(_SFR_IO_ADDR' if register.in_io else '"n"(_SFR_MEM_ADDR'
+        operands.append(f"[port{index}] {access}({register.name}))")
+    *others, last = operands
+    return (*(Line(text, ",") for text in others), Line(last, ""))
+
+
+def _line(instruction: Instruction) -> Line:
+    label = f"{instruction.label}:" if instruction.label else ""
+    text = f'"{label:<3}{instruction.text:<{_LINE_WIDTH}}\\n"'
+    cycles = str(instruction.cycles) if instruction.cycles else " "
+    return Line(text, f"  // {cycles}  {instruction.note}".rstrip())
+
+
+def _place_operand(name: str, place: Place) -> str:
+    if place.register:
+        return f'[{name}] "I"(_SFR_IO_ADDR({place.name}))'
+    return f'[{name}] "i"(&{place.name})'

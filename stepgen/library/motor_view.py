@@ -1,0 +1,184 @@
+"""
+The view of one motor: names, masks and numbers as finished text.
+"""
+
+from dataclasses import dataclass
+
+from stepgen.devices import Board
+from stepgen.library.hot_view import Line, instruction_lines, operand_lines
+from stepgen.library.kernel_view import Bits, KernelView, bit_groups, kernel_view
+from stepgen.library.prose import isr_contract, rest_comment, summary, wiring
+from stepgen.plan.model import MotorPlan
+
+_EXAMPLE_SPEED_SPS = 200  # slow enough for any motor, a 28BYJ-48 included
+
+
+@dataclass(frozen=True)
+class TimerView:
+    """
+    Names of a timer's registers and bits, and the two values that select its mode.
+    """
+
+    number: int
+    tccra: str
+    tccrb: str
+    tcnt: str
+    ocra: str
+    timsk: str
+    tifr: str
+    tov: str
+    toie: str
+    mode_a: str
+    mode_b: str
+
+
+@dataclass(frozen=True)
+class Named:
+    """
+    A name with a value or a remark.
+    """
+
+    name: str
+    value: str = ""
+    comment: str = ""
+
+
+@dataclass(frozen=True)
+class Turns:
+    """
+    The helper that turns turns into steps: its formula and what it stands for.
+    """
+
+    expression: str
+    comment: str
+
+
+@dataclass(frozen=True)
+class MotorView:
+    """
+    One motor, as its parts of header and source need it.
+    """
+
+    name: str
+    title: str
+    summary: str
+    wiring: tuple[str, ...]
+    rest_comment: str
+    turns: Turns | None
+    kernel_name: str
+    timing_name: str
+    motion_name: str
+    kernel: KernelView
+    timer: TimerView
+    vector: str
+    handler: str
+    count: str
+    state: str
+    variables: tuple[Named, ...]
+    releases: bool
+    enables: tuple[Bits, ...]
+    released: tuple[Bits, ...]
+    low_at_start: tuple[Bits, ...]
+    outputs: tuple[Bits, ...]
+    elapsed: int
+    elapsed_thinking: int
+    isr_contract: tuple[str, ...]
+    usual: tuple[Line, ...]
+    rare: tuple[Line, ...]
+    operands: tuple[Line, ...]
+    wires: tuple[Named, ...]
+    example_speed_sps: int
+    turn_steps: str
+    turn_text: str
+
+
+def motor_view(motor: MotorPlan, board: Board) -> MotorView:
+    """
+    Return everything that the templates print about *motor*.
+    """
+    storage, mcu = motor.storage, board.mcu
+    return MotorView(
+        name=motor.name,
+        title=motor.name[0].upper() + motor.name[1:],
+        summary=summary(motor),
+        wiring=wiring(motor, board),
+        rest_comment=rest_comment(motor),
+        turns=_turns(motor),
+        kernel_name=motor.kernel.kind,
+        timing_name=module_name(motor.timing.kind),
+        motion_name=module_name(motor.motion),
+        kernel=kernel_view(motor.kernel),
+        timer=_timer_view(motor),
+        vector=motor.timing.vector,
+        handler=motor.handler,
+        count=storage.count.name,
+        state=storage.state.name,
+        variables=_variables(motor),
+        releases=motor.releases_at_rest,
+        enables=bit_groups(motor.drive.enables, mcu),
+        released=bit_groups(motor.drive.released, mcu),
+        low_at_start=bit_groups(motor.drive.every_wire, mcu),
+        outputs=bit_groups(motor.drive.every_wire, mcu),
+        elapsed=motor.elapsed_cycles,
+        elapsed_thinking=motor.elapsed_thinking_cycles,
+        isr_contract=isr_contract(motor),
+        usual=instruction_lines(motor.hot_path.usual),
+        rare=instruction_lines(motor.hot_path.boundary),
+        operands=operand_lines(motor),
+        wires=tuple(
+            Named(wire.signal, wire.pin.label, wire.pin.bit.name) for wire in motor.drive.every_wire
+        ),
+        example_speed_sps=_EXAMPLE_SPEED_SPS,
+        turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",
+        turn_text="turn" if motor.steps_per_turn else "way of 200 steps",
+    )
+
+
+def module_name(kind: str) -> str:
+    """
+    Return the name of the partial for *kind*, as the spec calls it.
+    """
+    return kind.replace("-", "_")
+
+
+def _turns(motor: MotorPlan) -> Turns | None:
+    steps = motor.steps_per_turn
+    if steps is None:
+        return None
+    if steps.denominator == 1:
+        return Turns(f"turns * {steps.numerator}UL", f"Steps for whole turns: {steps} in each.")
+    half = steps.denominator // 2
+    return Turns(
+        f"static_cast<uint32_t>((turns * {steps.numerator}ULL + {half}) / {steps.denominator})",
+        f"Steps for whole turns, rounded: {float(steps):.6g} in each.",
+    )
+
+
+def _timer_view(motor: MotorPlan) -> TimerView:
+    timer = motor.timing.timer
+    n = timer.number
+    return TimerView(
+        number=n,
+        tccra=timer.tccra.name,
+        tccrb=timer.tccrb.name,
+        tcnt=timer.tcnt.name,
+        ocra=timer.ocra.name,
+        timsk=timer.timsk.name,
+        tifr=timer.tifr.name,
+        tov=f"TOV{n}",
+        toie=f"TOIE{n}",
+        mode_a=f"_BV(WGM{n}1) | _BV(WGM{n}0)",
+        mode_b=f"_BV(WGM{n}3) | _BV(WGM{n}2)",
+    )
+
+
+def _variables(motor: MotorPlan) -> tuple[Named, ...]:
+    comments = {
+        motor.storage.count.name: (motor.storage.count, "step interrupts until the next boundary"),
+        motor.storage.state.name: (motor.storage.state, motor.kernel.state_note),
+    }
+    return tuple(
+        Named(name, comment=comment)
+        for name, (place, comment) in comments.items()
+        if place.register is None
+    )

@@ -1,0 +1,130 @@
+"""
+Sentences about a plan, for comments and documents: what is wired where, and who owns what.
+"""
+
+from stepgen.devices import Board
+from stepgen.library.text import comment_lines, frequency, listed
+from stepgen.plan.coils import CoilDrive
+from stepgen.plan.model import MotorPlan, Plan
+
+
+def sequence_text(drive: CoilDrive) -> str:
+    """
+    Return what the motor makes at a time, such as ``half steps``.
+    """
+    if drive.sequence == "table":
+        return f"own table of {len(drive.phases)} patterns"
+    return f"{drive.sequence} steps"
+
+
+def summary(motor: MotorPlan) -> str:
+    """
+    Return driver, sequence and timer of *motor* in a few words.
+    """
+    return f"{motor.drive.title}, {sequence_text(motor.drive)}, timer {motor.timing.timer.number}"
+
+
+def title(plan: Plan, sentence: str) -> tuple[str, ...]:
+    """
+    Return what stands at the top of the header: what the library is, and for what hardware.
+    """
+    board = plan.board
+    return (
+        *comment_lines(f"{plan.library.name} {plan.library.version}: {sentence}"),
+        "",
+        f"Board: {board.title} ({board.mcu.title}, {frequency(board.f_cpu_hz)})",
+        *(
+            line
+            for motor in plan.motors
+            for line in comment_lines(f"{motor.name}: {summary(motor)}")
+        ),
+    )
+
+
+def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
+    """
+    Return a table of the wires of *motor*, and what the sketch must leave to it.
+    """
+    rows = [
+        f"  {wire.signal:<10}{wire.pin.label:<6}{wire.pin.bit.name}"
+        for wire in motor.drive.every_wire
+    ]
+    timer = motor.timing.timer
+    taken = f"Timer {timer.number} belongs to the motor: no analogWrite() on {_pwm(motor, board)}."
+    return (
+        f"  {'signal':<10}{'pin':<6}port bit",
+        *rows,
+        "",
+        *comment_lines(_port_rule(motor)),
+        *comment_lines(taken),
+    )
+
+
+def _port_rule(motor: MotorPlan) -> str:
+    """
+    Return what the sketch may do to the ports of *motor*.
+    """
+    ports = sorted({wire.pin.bit.port for wire in motor.drive.every_wire})
+    if motor.owns_ports:
+        return f"Port {motor.port_letters} belongs to the motor: the sketch must not write to it."
+    return (
+        f"The sketch may change other bits of port{'s' if len(ports) > 1 else ''} {listed(ports)} "
+        "with digitalWrite(), with single-bit sbi/cbi, or inside ATOMIC_BLOCK."
+    )
+
+
+def _pwm(motor: MotorPlan, board: Board) -> str:
+    """
+    Return the pins, or the port bits that no pin carries, that the timer of *motor* could drive.
+    """
+    bits = [bit for _, bit in motor.timing.timer.outputs]
+    pins = [board.find_pin(bit.name) for bit in bits]
+    return listed(
+        [pin.label if pin else bit.name for pin, bit in zip(pins, bits, strict=True)], "or"
+    )
+
+
+def rest_comment(motor: MotorPlan) -> str:
+    """
+    Return what the coils do at the end of a move.
+    """
+    if motor.releases_at_rest:
+        return "At its end the coils go off one interval after the last step."
+    return "At its end the coils stay on and hold the position."
+
+
+def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
+    """
+    Return trigger, cycles and effects of the step interrupt, as lines of a comment.
+    """
+    path = motor.hot_path
+    ports = listed(sorted({wire.pin.bit.port for wire in motor.drive.wires}))
+    return comment_lines(
+        f"Timer {motor.timing.timer.number} overflow: one step, {path.usual_cycles} cycles from "
+        f"the interrupt's response to RETI; at most {motor.isr_bound_cycles} when it goes on in "
+        f"{motor.handler}. The wires change {path.edge_cycles} cycles after the timer wraps "
+        f"({path.boundary_edge_cycles} before a boundary). It writes port {ports} and nothing "
+        "else that the sketch can see. Behind each instruction stand its cycles."
+    )
+
+
+def takes(plan: Plan) -> tuple[str, ...]:
+    """
+    Return what the library takes from the sketch, a line each.
+    """
+    rows = [
+        f"Timer {motor.timing.timer.number} and `{motor.timing.vector}`: no `analogWrite()` on "
+        f"{_pwm(motor, plan.board)}."
+        for motor in plan.motors
+    ]
+    rows.extend(_port_rule(motor) for motor in plan.motors)
+    rows.append("`GPIOR0`, `GPIOR1` and `GPIOR2`, which the Arduino core does not use.")
+    return tuple(dict.fromkeys(rows))
+
+
+def paragraph(plan: Plan) -> str:
+    """
+    Return the second sentence of library.properties.
+    """
+    motors = "; ".join(f"{m.name}: {m.drive.title}, {sequence_text(m.drive)}" for m in plan.motors)
+    return f"Made by stepgen for the {plan.board.title}: {motors}."

@@ -1,0 +1,62 @@
+"""
+The example sketch on a simulated chip: no mailbox, just the program that users see first.
+"""
+
+from pathlib import Path
+
+from stepgen.plan.model import Plan
+from stepgen.spec import LoadedSpec
+from stepgen.verify.bench import Answer, Call, CallKind, watched_registers
+from stepgen.verify.compare import Scene, compare
+from stepgen.verify.scenarios import BACK, DRIVE
+from stepgen.verify.simavr import Machine
+from stepgen.verify.subject import Subject, subjects
+from stepgen.verify.trace import Trace
+
+_RUN_SECONDS = 2
+_SPEED_SPS = 200
+_DEFAULT_STEPS = 200
+
+
+def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
+    """
+    Run the example for a few seconds; return what differs from the model, empty if nothing.
+
+    The example turns each motor to and fro. Its calls are found by what they do: they start
+    the timer of a motor at rest, from a stretch with interrupts off.
+    """
+    f_cpu_hz = plan.board.f_cpu_hz
+    with Machine(
+        elf, mcu=plan.board.mcu.name, f_cpu_hz=f_cpu_hz, watch=watched_registers(plan)
+    ) as machine:
+        machine.fine = True
+        machine.run_until(_RUN_SECONDS * f_cpu_hz)
+        trace = Trace(machine.events(), plan.board.mcu)
+        until = machine.cycle
+        findings = []
+        for index, subject in enumerate(subjects(loaded, plan)):
+            answers = _calls(trace, subject, index, plan)
+            if not answers:
+                findings.append(f"{subject.name}: the example never starts it")
+            result = compare(subject, index, Scene(trace, answers, plan, until))
+            findings.extend(f"{subject.name}: {finding}" for finding in result.findings)
+            if not result.steps:
+                findings.append(f"{subject.name}: the example makes no step")
+    return tuple(findings)
+
+
+def _calls(trace: Trace, subject: Subject, index: int, plan: Plan) -> list[Answer]:
+    """
+    Return the calls that the example must have made, one for each start of the timer.
+    """
+    motor = plan.motors[index]
+    steps = round(motor.steps_per_turn) if motor.steps_per_turn else _DEFAULT_STEPS
+    top = plan.board.f_cpu_hz // _SPEED_SPS
+    answers: list[Answer] = []
+    for start in trace.clock_starts(subject.tccrb, subject.tcnt):
+        section = trace.masked_section(start.cycle)
+        if section:  # the Arduino core's own init() starts every timer with interrupts on
+            control = BACK if len(answers) % 2 else DRIVE
+            call = Call(CallKind.SET_SPEED, index, control, top, steps)
+            answers.append(Answer(call, *section, result=0, status=0, position=0))
+    return answers

@@ -1,0 +1,88 @@
+"""
+What verification found: checks, figures, and their JSON.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Check:
+    """
+    One thing that was checked, and what came out.
+    """
+
+    name: str
+    passed: bool
+    detail: str
+
+
+@dataclass
+class MotorFigures:
+    """
+    A motor's figures in CPU cycles.
+
+    Args:
+        measured_max: Longest single step interrupt, response through RETI.
+        bound: The longest that the plan allows.
+        cycles_per_step: Mean taken from ``loop()`` for each step of a long constant run.
+        max_steps_per_second: Fastest rate that the library accepts.
+        jitter_cycles: Latest edge after its deadline, in any scenario.
+    """
+
+    measured_max: int = 0
+    bound: int = 0
+    cycles_per_step: float = 0.0
+    max_steps_per_second: float = 0.0
+    jitter_cycles: int = 0
+
+
+@dataclass
+class SpecReport:
+    """
+    The outcome of verifying one spec with one compiler.
+    """
+
+    spec: str
+    compiler: str
+    checks: list[Check] = field(default_factory=list)
+    motors: dict[str, MotorFigures] = field(default_factory=dict)
+    flash_bytes: int = 0
+    ram_bytes: int = 0
+    stack_bytes: int = 0
+
+    @property
+    def passed(self) -> bool:
+        """
+        Tell whether every check passed; without a check nothing has.
+        """
+        return bool(self.checks) and all(check.passed for check in self.checks)
+
+    def check(self, name: str, findings: tuple[str, ...], fine: str) -> None:
+        """
+        Add a check that passed if there are no *findings*; *fine* says what was seen then.
+        """
+        self.checks.append(Check(name, not findings, "; ".join(findings) or fine))
+
+    def as_json(self) -> dict[str, Any]:
+        """
+        Return the object that ``stepgen verify --json`` prints.
+        """
+        return {
+            "spec": self.spec,
+            "compiler": self.compiler,
+            "passed": self.passed,
+            "checks": [vars(check) for check in self.checks],
+            "motors": {
+                name: {
+                    "isr_cycles": {"measured_max": one.measured_max, "bound": one.bound},
+                    "cycles_per_step": one.cycles_per_step,
+                    "max_steps_per_second": one.max_steps_per_second,
+                    "jitter_cycles": one.jitter_cycles,
+                }
+                for name, one in self.motors.items()
+            },
+            "flash_bytes": self.flash_bytes,
+            "ram_bytes": self.ram_bytes,
+            "stack_bytes": self.stack_bytes,
+        }

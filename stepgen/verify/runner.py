@@ -1,0 +1,97 @@
+"""
+Running a scenario on a simulated chip, and judging it.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from stepgen.plan.model import Plan
+from stepgen.spec import LoadedSpec
+from stepgen.verify.bench import Answer, Bench, Call, Loop
+from stepgen.verify.compare import Comparison, Scene, compare
+from stepgen.verify.scenarios import Scenario
+from stepgen.verify.subject import subjects
+from stepgen.verify.trace import Trace
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """
+    How a scenario went.
+
+    Args:
+        scenario: What was asked.
+        comparisons: How each motor did.
+        masked_cycles: Longest stretch with interrupts off within a call of the library.
+        stack_bytes: Most stack that a step interrupt took.
+        trace: Everything that was recorded.
+        answers: The calls as they happened.
+    """
+
+    scenario: Scenario
+    comparisons: tuple[Comparison, ...]
+    masked_cycles: int
+    stack_bytes: int
+    trace: Trace
+    answers: tuple[Answer, ...]
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """
+        Return what differs from the model, with the motor's name before it.
+        """
+        return tuple(
+            f"{comparison.motor}: {finding}"
+            for comparison in self.comparisons
+            for finding in comparison.findings
+        )
+
+
+def run_scenario(loaded: LoadedSpec, plan: Plan, elf: Path, scenario: Scenario) -> Outcome:
+    """
+    Run *scenario* on the bench *elf* and compare every motor with the model.
+
+    Raises:
+        StepgenError: The sketch crashed or hangs.
+    """
+    with Bench(plan, elf) as bench:
+        bench.set_loop(scenario.loop)
+        for action in scenario.actions:
+            if isinstance(action, Call):
+                bench.call(action)
+            else:
+                bench.wait(action.cycles)
+        trace = Trace(bench.events(), plan.board.mcu)
+        answers = tuple(bench.answers)
+        scene = Scene(trace, answers, plan, bench.machine.cycle)
+        motors = subjects(loaded, plan)
+        return Outcome(
+            scenario=scenario,
+            comparisons=tuple(compare(motor, i, scene) for i, motor in enumerate(motors)),
+            masked_cycles=_longest_mask(trace, answers),
+            stack_bytes=_stack_bytes(bench, [motor.vector for motor in motors]),
+            trace=trace,
+            answers=answers,
+        )
+
+
+def is_asleep(scenario: Scenario) -> bool:
+    """
+    Tell whether interrupts wake the chip there, which makes their response four cycles longer.
+    """
+    return scenario.loop is Loop.SLEEP
+
+
+def _longest_mask(trace: Trace, answers: tuple[Answer, ...]) -> int:
+    longest = 0
+    for answer in answers:
+        which = 0
+        while section := trace.commit(answer.begin_cycle, answer.end_cycle, which):
+            longest = max(longest, section[1] - section[0])
+            which += 1
+    return longest
+
+
+def _stack_bytes(bench: Bench, vectors: list[int]) -> int:
+    used = bench.machine.isr_stack
+    return max((used.get(vector, 0) for vector in vectors), default=0)

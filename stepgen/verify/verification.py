@@ -1,0 +1,91 @@
+"""
+Verifying a spec: compile it, run every scenario, compare, and measure.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from stepgen.plan.model import Plan
+from stepgen.plan.planner import make_plan
+from stepgen.spec import LoadedSpec
+from stepgen.verify.example import run_example
+from stepgen.verify.firmware import build_firmware
+from stepgen.verify.report import MotorFigures, SpecReport
+from stepgen.verify.runner import Outcome, is_asleep, run_scenario
+from stepgen.verify.scenarios import Scenario, standard_scenarios
+from stepgen.verify.toolchain import Compiler
+
+Track = Callable[[Sequence[Scenario]], Iterable[Scenario]]
+
+
+def verify_spec(
+    loaded: LoadedSpec,
+    compiler: Compiler,
+    *,
+    templates: Path | None = None,
+    track: Track = iter,
+) -> SpecReport:
+    """
+    Prove the library of *loaded*: every scenario against the model, sizes and cycles measured.
+
+    Args:
+        loaded: The spec.
+        compiler: Which avr-gcc builds it.
+        templates: Templates in place of stepgen's own, to see that a mutant is caught.
+        track: Passes the scenarios on one by one, to show progress.
+
+    Raises:
+        StepgenError: The spec is refused, does not compile, or its firmware crashes or hangs.
+    """
+    plan = make_plan(loaded)
+    report = SpecReport(str(loaded.document.path), compiler.name)
+    firmware = build_firmware(plan, loaded.document.text, compiler, templates)
+    report.flash_bytes, report.ram_bytes = firmware.flash_bytes, firmware.ram_bytes
+    report.check(
+        "compiles without a warning",
+        (),
+        f"{compiler.name}: {firmware.flash_bytes} bytes of flash and {firmware.ram_bytes} of RAM "
+        "over an empty sketch",
+    )
+    report.motors = {
+        motor.name: MotorFigures(
+            bound=motor.isr_bound_cycles,
+            max_steps_per_second=plan.board.f_cpu_hz / plan.minimum_period_cycles,
+        )
+        for motor in plan.motors
+    }
+    for scenario in track(standard_scenarios(plan)):
+        _judge(run_scenario(loaded, plan, firmware.bench, scenario), plan, report)
+    findings = run_example(loaded, plan, firmware.example)
+    report.check("the example sketch", findings, "every step as the model says")
+    return report
+
+
+def _judge(outcome: Outcome, plan: Plan, report: SpecReport) -> None:
+    """
+    Add what *outcome* says to *report*: its check, and the figures of each motor.
+    """
+    findings = list(outcome.findings)
+    if outcome.masked_cycles > plan.masked_bound_cycles:
+        findings.append(
+            f"interrupts were off for {outcome.masked_cycles} cycles in a call; "
+            f"the plan allows {plan.masked_bound_cycles}"
+        )
+    steps = sum(comparison.steps for comparison in outcome.comparisons)
+    report.check(
+        outcome.scenario.name,
+        tuple(findings),
+        f"{steps} steps, {len(outcome.answers)} calls as the model says",
+    )
+    report.stack_bytes = max(report.stack_bytes, outcome.stack_bytes)
+    for comparison in outcome.comparisons:
+        figures = report.motors[comparison.motor]
+        figures.jitter_cycles = max(figures.jitter_cycles, comparison.jitter_cycles)
+        if not is_asleep(outcome.scenario):
+            longest = comparison.longest_isr_cycles
+            figures.measured_max = max(figures.measured_max, longest)
+        if comparison.steps >= _LONG_RUN_STEPS:
+            figures.cycles_per_step = round(comparison.isr_cycles / comparison.steps, 2)
+
+
+_LONG_RUN_STEPS = 10_000

@@ -1,0 +1,38 @@
+"""
+The engine of the Arduino IDE builds what users copy into their libraries folder.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from stepgen import api
+from stepgen.verify.arduino_builder import build_with_ide
+from stepgen.verify.example import run_example
+from stepgen.verify.toolchain import Compiler, find_compilers
+
+SPECS = Path(__file__).parents[2] / "specs"
+
+
+@pytest.mark.parametrize("compiler", find_compilers(), ids=lambda compiler: compiler.name)
+@pytest.mark.parametrize("stem", ["uno_motor_shield", "uno_mixed_ports", "mega_pan_tilt"])
+def test_the_example_built_by_the_ide_steps_as_the_model_says(
+    stem: str, compiler: Compiler, tmp_path: Path
+) -> None:
+    """
+    A library in a libraries folder builds without a warning, and its ELF passes the comparison.
+    """
+    path = SPECS / f"{stem}.yaml"
+    (written,) = api.write(path, tmp_path / "libraries")
+    plan = api.plan(path)
+
+    built = build_with_ide(
+        written.target / "examples/Turn",
+        tmp_path / "libraries",
+        plan.board.fqbn,
+        compiler,
+        tmp_path / "build",
+    )
+
+    assert built.warnings == ()
+    assert run_example(api.load(path), plan, built.elf) == ()

@@ -1,0 +1,126 @@
+"""
+Verification can fail: each planted bug of the templates is caught.
+"""
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from stepgen.library.render import template_dir
+from stepgen.spec import load_spec
+from stepgen.verify.toolchain import default_compiler
+from stepgen.verify.verification import verify_spec
+
+SPECS = Path(__file__).parents[2] / "specs"
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """
+    A bug: one text of one template replaced by another, and the spec that shows it.
+    """
+
+    name: str
+    template: str
+    old: str
+    new: str
+    spec: str = "uno_motor_shield"
+
+
+MUTANTS = (
+    Mutant(
+        "TOP for TOP - 1",
+        "timings/fast_pwm.j2",
+        "static_cast<uint16_t>(period - 1)",
+        "static_cast<uint16_t>(period)",
+    ),
+    Mutant(
+        "a limit that is off by one",
+        "motions/constant.j2",
+        "const uint32_t rest = steps - 1;",
+        "const uint32_t rest = steps;",
+    ),
+    Mutant(
+        "the bytes of OCR swapped",
+        "timings/fast_pwm.j2",
+        "{{ timer.ocra }} = setting.top;",
+        "{{ timer.ocra }} = __builtin_bswap16(setting.top);",
+    ),
+    Mutant(
+        "a position that is read without cli",
+        "motions/constant.j2",
+        "ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position",
+        "{ position",
+    ),
+    Mutant(
+        "a speed that is set without cli",
+        "motions/constant.j2",
+        "  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {\n    const uint8_t before",
+        "  {\n    const uint8_t before",
+    ),
+    Mutant(
+        "the pattern table reversed",
+        "kernels/ring.j2",
+        "for row in motor.kernel.rows",
+        "for row in motor.kernel.rows | reverse",
+        spec="uno_uln2003_wave",
+    ),
+    Mutant(
+        "a direction that does not turn round",
+        "kernels/toggle.j2",
+        "{{ motor.state }} ^= {{ motor.kernel.both }};",
+        "{{ motor.state }} ^= 0;",
+    ),
+    Mutant(
+        "an overflow that still waits after a stop",
+        "timings/fast_pwm.j2",
+        "{{ timer.tifr }} = _BV({{ timer.tov }});",
+        "",
+    ),
+    Mutant(
+        "a late TOP: the period in progress is not looked at",
+        "timings/fast_pwm.j2",
+        "== setting.select) {",
+        "!= 99) {",
+    ),
+    Mutant(
+        "a timer that starts from zero after the step interrupt has set it",
+        "timings/fast_pwm.j2",
+        "{{ timer.tcnt }} = setting.elapsed;",
+        "{{ timer.tcnt }} = 0;",
+    ),
+    Mutant(
+        "coils that go off with the last step",
+        "motions/constant.j2",
+        "{{ motor.name }}Reached(kThink | kCoast);",
+        "{{ motor.name }}Reached(kThink | kCoast); {{ motor.name }}CoilsOff();",
+        spec="uno_uln2003_28byj48",
+    ),
+    Mutant(
+        "a millisecond limit that is one step late",
+        "motions/constant.j2",
+        "{{ motor.name }}EndMillis) < 0)",
+        "{{ motor.name }}EndMillis) <= 0)",
+    ),
+)
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
+def test_a_planted_bug_is_caught(mutant: Mutant, tmp_path: Path) -> None:
+    """
+    The library with the bug compiles, and verification says that it is wrong.
+    """
+    templates = tmp_path / "templates"
+    shutil.copytree(template_dir(), templates)
+    file = templates / mutant.template
+    text = file.read_text(encoding="utf-8")
+    assert mutant.old in text
+    file.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
+    loaded = load_spec(SPECS / f"{mutant.spec}.yaml")
+
+    report = verify_spec(loaded, default_compiler(), templates=templates)
+
+    failed = [check.name for check in report.checks if not check.passed]
+    assert failed, f"{mutant.name} was not noticed"

@@ -1,0 +1,225 @@
+"""
+Conflicts: what two owners want, and what the board lacks, each with its place and a way out.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from stepgen.devices import Board
+from stepgen.errors import Fault, StepgenError
+from stepgen.plan.model import Plan
+from stepgen.plan.planner import free_timers, make_plan
+from stepgen.spec import load_spec
+
+Planner = Callable[[str], Plan]
+Faulty = Callable[[str], tuple[Fault, ...]]
+
+
+@pytest.fixture
+def planned(tmp_path: Path) -> Planner:
+    """
+    Return a function that plans a spec from its text.
+    """
+
+    def plan(text: str) -> Plan:
+        path = tmp_path / "spec.yaml"
+        path.write_text(f"library: Mine\n{text}", encoding="utf-8")
+        return make_plan(load_spec(path))
+
+    return plan
+
+
+@pytest.fixture
+def faults(planned: Planner) -> Faulty:
+    """
+    Return a function that plans a spec in conflict and gives the faults.
+    """
+
+    def plan(text: str) -> tuple[Fault, ...]:
+        with pytest.raises(StepgenError) as error:
+            planned(text)
+        return error.value.faults
+
+    return plan
+
+
+def _lines(found: tuple[Fault, ...]) -> list[str]:
+    return [f"{fault.place.split('spec.yaml', 1)[1]} {fault.reason}" for fault in found]
+
+
+def test_an_unknown_board_is_refused_with_the_known_ones(faults: Faulty) -> None:
+    """
+    The message lists the boards there are.
+    """
+    (fault,) = faults("board: zero\nmotors:\n  motor: {drive: motor-shield}\n")
+
+    assert (fault.place[-4:], fault.text) == (":2:8", "zero")
+    assert fault.reason == "is no board that stepgen knows; choose one of mega, uno"
+
+
+def test_a_timer_that_the_board_lacks_is_refused(faults: Faulty) -> None:
+    """
+    The Uno has one 16-bit timer, and the message names it.
+    """
+    found = faults("board: uno\nmotors:\n  motor: {drive: motor-shield, timer: 3}\n")
+
+    assert found[0].text == "3"
+    assert _lines(found) == [
+        ":4:39 the Arduino Uno has no 16-bit timer 3; fast PWM runs on timer 1"
+    ]
+
+
+def test_a_pin_that_the_board_lacks_is_refused(faults: Faulty) -> None:
+    """
+    Each pin that is not there is reported at its own place.
+    """
+    found = faults(
+        "board: uno\nmotors:\n  motor: {drive: {kind: four-wire, pins: [D4, A8, D6, D53]}}\n"
+    )
+
+    assert [fault.text for fault in found] == ["A8", "D53"]
+    assert _lines(found)[0] == (
+        ":4:47 the Arduino Uno has no pin A8; `stepgen boards uno` lists them"
+    )
+
+
+def test_a_pin_under_two_names_is_one_pin(faults: Faulty) -> None:
+    """
+    D4 and PD4 are the same copper, which only the board knows.
+    """
+    found = faults(
+        "board: uno\nmotors:\n  motor: {drive: {kind: four-wire, pins: [D4, D5, D6, PD4]}}\n"
+    )
+
+    assert [(fault.text, fault.reason) for fault in found] == [
+        ("PD4", "PD4 is D4 again; give each of the four coils a pin of its own")
+    ]
+
+
+def test_two_motors_cannot_share_a_pin(faults: Faulty) -> None:
+    """
+    The second motor is told who has the pin, as what, and what to do.
+    """
+    found = faults(
+        "board: mega\nmotors:\n"
+        "  pan: {drive: {kind: four-wire, pins: [D22, D23, D24, D12]}, timer: 3}\n"
+        "  tilt: {drive: motor-shield, timer: 4}\n"
+    )
+
+    (line,) = _lines(found)
+    assert line == (
+        ":5:17 pin D12 (PB6) is taken by motor pan, as coil D and wanted by motor tilt, as DIR A; "
+        "give one of them other pins"
+    )
+
+
+def test_two_motors_cannot_share_a_timer(faults: Faulty) -> None:
+    """
+    The way out names the timers that are left.
+    """
+    found = faults(
+        "board: mega\nmotors:\n"
+        "  pan: {drive: {kind: four-wire, pins: [D22, D23, D24, D25]}, timer: 3}\n"
+        "  tilt: {drive: motor-shield, timer: 3}\n"
+    )
+
+    assert _lines(found) == [
+        ":5:38 timer 3 is taken by motor pan and wanted by motor tilt; take timer 1 or 4 or 5"
+    ]
+
+
+def test_servo_takes_the_only_timer_of_the_uno(faults: Faulty) -> None:
+    """
+    Known weakness 1 of system 1: nothing warned the user. Now something does, with a way out.
+    """
+    named = faults("board: uno\nuses: [Servo]\nmotors:\n  motor: {drive: motor-shield, timer: 1}\n")
+    any_timer = faults("board: uno\nuses: [Servo]\nmotors:\n  motor: {drive: motor-shield}\n")
+
+    (line,) = _lines(named)
+    assert line == (
+        ":5:39 timer 1 is taken by Servo and wanted by motor motor; "
+        "no other 16-bit timer is left on this board"
+    )
+    assert any_timer[0].reason.endswith(
+        "remove a motor or a library from `uses`, or take a larger board"
+    )
+
+
+def test_servo_leaves_three_timers_of_the_mega(mega: Board) -> None:
+    """
+    Up to 12 servos take timer 5 only.
+    """
+    assert free_timers(mega, ("Servo",), ()) == (1, 3, 4)
+
+
+def test_a_motor_beside_servo_on_the_mega_gets_a_free_timer(planned: Planner) -> None:
+    """
+    Without a timer in the spec, the first one that nobody wants is taken.
+    """
+    plan = planned("board: mega\nuses: [Servo]\nmotors:\n  motor: {drive: motor-shield}\n")
+
+    assert plan.motors[0].timing.timer.number == 1
+
+
+def test_timers_that_are_named_are_given_away_first(planned: Planner) -> None:
+    """
+    A motor that takes any timer does not take the one that a later motor names.
+    """
+    plan = planned(
+        "board: mega\nmotors:\n"
+        "  pan: {drive: {kind: four-wire, pins: [D22, D23, D24, D25]}}\n"
+        "  tilt: {drive: motor-shield, timer: 1}\n"
+    )
+
+    assert [motor.timing.timer.number for motor in plan.motors] == [3, 1]
+
+
+@pytest.mark.parametrize(("pin", "label"), [("D0", "D0 (PD0)"), ("D1", "D1 (PD1)")])
+def test_serial_needs_its_pins(faults: Faulty, pin: str, label: str) -> None:
+    """
+    A coil on RX or TX is refused when the sketch uses Serial.
+    """
+    (fault,) = faults(
+        "board: uno\nuses: [Serial]\nmotors:\n"
+        f"  motor: {{drive: {{kind: four-wire, pins: [{pin}, D4, D5, D6]}}}}\n"
+    )
+
+    assert fault.reason.startswith(f"pin {label} is taken by Serial and wanted by motor motor")
+    assert fault.reason.endswith("; give one of them other pins")
+
+
+def test_without_serial_its_pins_are_free(planned: Planner) -> None:
+    """
+    What the sketch does not use takes nothing.
+    """
+    plan = planned(
+        "board: uno\nmotors:\n  motor: {drive: {kind: four-wire, pins: [D0, D1, D5, D6]}}\n"
+    )
+
+    assert [wire.pin.label for wire in plan.motors[0].drive.wires] == ["D0", "D1", "D5", "D6"]
+
+
+def test_an_unknown_library_is_refused_with_the_known_ones(faults: Faulty) -> None:
+    """
+    What stepgen does not know it cannot check; it says what it knows on this board.
+    """
+    (fault,) = faults("board: uno\nuses: [Serial1]\nmotors:\n  motor: {drive: motor-shield}\n")
+
+    assert fault.text == "Serial1"
+    assert fault.reason.startswith("stepgen does not know what Serial1 takes on the Arduino Uno")
+    assert "Servo" in fault.reason
+
+
+def test_all_conflicts_are_reported_together(faults: Faulty) -> None:
+    """
+    Pins, timers and libraries come in one report, in the order of the lines.
+    """
+    found = faults(
+        "board: uno\nuses: [Nothing]\nmotors:\n"
+        "  pan: {drive: {kind: four-wire, pins: [D0, A9, D5, D6]}, timer: 2}\n"
+        "  tilt: {drive: motor-shield, timer: 1}\n"
+    )
+
+    assert [fault.text for fault in found] == ["Nothing", "A9", "2"]
