@@ -7,6 +7,7 @@ check failed; 2 wrong use or an invalid spec.
 """
 
 import errno
+import os
 import sys
 from typing import Annotated, Any
 
@@ -32,9 +33,20 @@ class _Commands(TyperGroup):
         except OSError as error:
             if error.errno == errno.EPIPE:  # `stepgen boards mega | head`
                 raise
+            _discard_output()
             what = error.strerror or str(error)
             report_faults([Fault(str(error.filename or ""), "", f"the system refuses: {what}")])
         raise typer.Exit(WRONG)
+
+
+def _discard_output() -> None:
+    """
+    Send what stdout still holds to nowhere: a disk that is full now is full at exit, too.
+    """
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 app = typer.Typer(

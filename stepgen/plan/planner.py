@@ -70,14 +70,20 @@ def make_plan(loaded: LoadedSpec) -> Plan:
 
 def _minimum_period_cycles(motors: tuple[MotorPlan, ...]) -> int:
     """
-    Return the shortest period in which no overflow can be missed.
+    Return the shortest period in which no overflow of any motor can be missed.
 
-    The timer keeps one overflow that waits, not two. The longest wait is every other
-    interrupt once, a call of the library with interrupts off, and the step itself.
+    The timer keeps one overflow that waits, not two: each must be served before the next. It
+    waits for a call of the library with interrupts off, for every other interrupt once, and
+    for what a motor's own last interrupt ran over its period P: own + others - P. So
+    P > others + (own + others - P), which is P > others + own / 2.
     """
-    steps = sum(motor.isr_bound_cycles for motor in motors)
-    longest_wait = steps + _OTHER_INTERRUPTS_CYCLES + _MASKED_CYCLES
-    return max(_SMALLEST_PERIOD_CYCLES, longest_wait)
+    shortest = _SMALLEST_PERIOD_CYCLES
+    every = sum(motor.isr_bound_cycles for motor in motors)
+    for motor in motors:
+        own = motor.isr_bound_cycles
+        others = every - own + _OTHER_INTERRUPTS_CYCLES + _MASKED_CYCLES
+        shortest = max(shortest, others + own // 2 + 1)
+    return shortest
 
 
 def _at(faults: Faults, motor: str) -> Faults:

@@ -8,13 +8,12 @@ from collections.abc import Sequence
 from stepgen.plan.model import MotorPlan
 from stepgen.reference.stimuli import Edge, EdgeKind
 from stepgen.verify.electrical import Levels, is_between
-from stepgen.verify.oracle import Comparison, Oracle, Scene
+from stepgen.verify.oracle import WAKE_CYCLES, Comparison, Oracle, Scene
+from stepgen.verify.rules import broken_rules
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import PortState, Run
 
 __all__ = ["Comparison", "Scene", "compare"]
-
-_WAKE_CYCLES = 4  # more, when the interrupt wakes the chip from idle sleep
 
 
 def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
@@ -27,6 +26,8 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     _compare_steps(subject, scene, runs, edges, result)
     _compare_calls(subject, scene, runs, edges, result)
     _compare_strangers(subject, scene, runs, result)
+    for broken in broken_rules(subject, index, scene, runs, edges):
+        result.report(broken)
     motor = scene.plan.motors[index]
     for run in runs:
         _check_run(run, motor, scene, result)
@@ -155,21 +156,27 @@ def _compare_strangers(subject: Subject, scene: Scene, runs: list[Run], result: 
     """
     Report changes of the motor's wires outside its interrupt and outside the library's calls.
     """
-    windows = sorted(
-        [(run.entered, run.left) for run in runs]
-        + [(answer.begin_cycle, answer.end_cycle) for answer in scene.answers]
+    windows = (
+        [(run.entered, run.left) for run in runs],
+        [(answer.begin_cycle, answer.end_cycle) for answer in scene.answers],
     )
-    starts = [start for start, _ in windows]
     held: dict[str, int] = {}
     for state in scene.trace.ports:
         changed = held.get(state.port, 0) ^ state.value
         held[state.port] = state.value
         if not changed & subject.masks.get(state.port, 0) or not scene.answers:
             continue
-        place = bisect_left(starts, state.cycle) - 1
-        inside = place >= 0 and state.cycle <= windows[place][1]
+        inside = any(_is_within(state.cycle, kind) for kind in windows)
         if not inside and state.cycle > scene.answers[0].begin_cycle:
             result.report(f"port {state.port} changed at cycle {state.cycle} outside the library")
+
+
+def _is_within(cycle: int, windows: Sequence[tuple[int, int]]) -> bool:
+    """
+    Tell whether *cycle* lies in one of *windows*, which ascend and do not overlap.
+    """
+    place = bisect_left(windows, (cycle,)) - 1
+    return place >= 0 and cycle <= windows[place][1]
 
 
 def _check_run(run: Run, motor: MotorPlan, scene: Scene, result: Comparison) -> None:
@@ -183,7 +190,7 @@ def _check_run(run: Run, motor: MotorPlan, scene: Scene, result: Comparison) -> 
     length = run.left - run.entered
     result.longest_isr_cycles = max(result.longest_isr_cycles, length)
     result.isr_cycles += length
-    if length > motor.isr_bound_cycles + _WAKE_CYCLES:
+    if length > motor.isr_bound_cycles + WAKE_CYCLES:
         result.report(f"a step interrupt of {length} cycles; its bound is {motor.isr_bound_cycles}")
 
 

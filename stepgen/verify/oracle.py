@@ -24,6 +24,7 @@ from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run, Trace
 
 _MOST_FINDINGS = 5
+WAKE_CYCLES = 4  # more, when the interrupt wakes the chip from idle sleep (datasheet)
 
 
 @dataclass

@@ -33,7 +33,9 @@ class CallStep(SpecModel):
 
     call: Literal["set_speed", "hold", "release", "read", "init"]
     motor: str | None = None
-    control: Annotated[tuple[Literal["DRV_EN", "ENDPOINT_MILLIS", "DIRECTION"], ...], Field(strict=False)] = ()
+    control: Annotated[
+        tuple[Literal["DRV_EN", "ENDPOINT_MILLIS", "DIRECTION"], ...], Field(strict=False)
+    ] = ()
     top: Annotated[int, _UINT32] = 0
     limit: Annotated[int, _UINT32] = 0
 

@@ -57,11 +57,7 @@ def _standard(plan: Plan, fastest: int) -> Iterator[tuple[str, Loop, list[Action
     yield (
         f"{_LONG_MOVE_STEPS} steps at the fastest rate",
         Loop.BUSY,
-        [
-            _speed(0, DRIVE, fastest, _LONG_MOVE_STEPS),
-            Wait((_LONG_MOVE_STEPS + 2) * fastest),
-            _read(0),
-        ],
+        list(_long_moves(motors, fastest)),
     )
     for prescaler, period in _PERIODS.items():
         yield (
@@ -77,6 +73,8 @@ def _standard(plan: Plan, fastest: int) -> Iterator[tuple[str, Loop, list[Action
     yield "single steps both ways", Loop.BUSY, list(_single_steps(motors, fastest))
     yield "restart while running", Loop.BUSY, list(_restarts(motors, fastest))
     yield "stop while running", Loop.BUSY, list(_stops(motors, fastest))
+    yield "stop at every point of a period", Loop.BUSY, list(_stops_everywhere(motors, fastest))
+    yield "change at every point of a period", Loop.BUSY, list(_changes_everywhere(motors, fastest))
     yield "millisecond end points", Loop.BUSY, list(_millis_ends(motors, fastest))
     yield "millisecond end points at slow rates", Loop.SLEEP, list(_slow_millis_ends(motors))
     yield "refused calls", Loop.BUSY, list(_refusals(motors, fastest, slowest))
@@ -96,6 +94,13 @@ def _read(motor: int) -> Call:
 
 def _each(motors: range, control: int, top: int, limit: int = 0) -> Iterator[Call]:
     return (_speed(motor, control, top, limit) for motor in motors)
+
+
+def _long_moves(motors: range, fastest: int) -> Iterator[Action]:
+    for motor in motors:
+        yield _speed(motor, DRIVE, fastest, _LONG_MOVE_STEPS)
+        yield Wait((_LONG_MOVE_STEPS + 2) * fastest)
+        yield _read(motor)
 
 
 def _single_steps(motors: range, fastest: int) -> Iterator[Action]:
@@ -138,6 +143,37 @@ def _stops(motors: range, fastest: int) -> Iterator[Action]:
             yield _read(motor)
 
 
+def _stops_everywhere(motors: range, fastest: int) -> Iterator[Action]:
+    """
+    Stop and start again, each time a cycle later in the period, past its end.
+
+    The period varies too, or the loop of the sketch would always meet it at the same points.
+    """
+    for motor in motors:
+        for offset in range(fastest + 60):
+            yield _speed(motor, DRIVE, fastest + offset % 17)
+            yield Wait(2 * fastest + offset)
+            yield _speed(motor, DRIVE, 0)
+            yield Wait(fastest)
+        yield _read(motor)
+
+
+def _changes_everywhere(motors: range, fastest: int) -> Iterator[Action]:
+    """
+    Change speed in mid-run, each time a little later in the period, past its end.
+    """
+    for motor in motors:
+        for offset in range(0, fastest + 60, 7):
+            yield _speed(motor, DRIVE if offset % 2 else BACK, fastest + offset % 17)
+            yield Wait(3 * fastest + offset)
+            yield _speed(motor, BACK, fastest + 160 + offset)
+            yield Wait(3 * fastest)
+            yield _speed(motor, DRIVE, 66_000)
+            yield Wait(100_000)
+        yield _read(motor)
+        yield _speed(motor, 0, 0)
+
+
 def _millis_ends(motors: range, fastest: int) -> Iterator[Action]:
     for motor in motors:
         for control, top, milliseconds in (
@@ -159,7 +195,7 @@ def _millis_ends(motors: range, fastest: int) -> Iterator[Action]:
 
 def _slow_millis_ends(motors: range) -> Iterator[Action]:
     """
-    An end point far beyond 32 768 ms, and one between two slow steps.
+    End far beyond 32 768 ms, and between two slow steps.
     """
     for motor in motors:
         yield _speed(motor, MILLIS, 16_000_000, 33_500)

@@ -16,7 +16,7 @@ SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
 @pytest.fixture(scope="session")
 def shield_report() -> SpecReport:
     """
-    The report of the spec that most people try first.
+    Verify the spec that most people try first.
     """
     return api.verify(next(path for path in SPECS if path.stem == "uno_motor_shield"))
 
