@@ -146,7 +146,9 @@ class Oracle:
         place = bisect_left(self._raised, deadline)
         if place < len(self._runs) and self._raised[place] == deadline:
             return self._runs[place].entered
-        return deadline
+        # Nobody served it. The instruction in progress still ends before an interrupt, and if
+        # that one masks the interrupts, the call that it belongs to comes first.
+        return deadline + self._scene.plan.board.mcu.response_cycles
 
     def _advance(self, cycle: int) -> None:
         self._edges.extend(self._model.advance(cycle))
