@@ -10,24 +10,69 @@ from typing import Annotated
 import typer
 
 from stepgen import api
+from stepgen.commands import plan_options as options
 from stepgen.commands.dump import plain
+from stepgen.commands.plan_rates import show_rates
 from stepgen.commands.report import print_tables, say
 from stepgen.plan.coils import CoilDrive
 from stepgen.plan.model import MotorPlan, Plan
 
-EXAMPLE = "Example: stepgen plan specs/uno_motor_shield.yaml --json"
+EXAMPLE = (
+    "Example: stepgen plan specs/uno_motor_shield.yaml --json or "
+    "stepgen plan --from 6 --to 800 --time 7.25 --plot ramp.svg"
+)
 
 Row = tuple[str, ...]
 
 
-def plan(
-    spec: Annotated[Path, typer.Argument(metavar="SPEC", help="A YAML file.")],
+def plan(  # noqa: PLR0913 - one parameter for each option
+    spec: Annotated[
+        Path | None, typer.Argument(metavar="SPEC", help="A YAML file.", show_default=False)
+    ] = None,
     *,
     as_json: Annotated[bool, typer.Option("--json", help="Print all of it as JSON.")] = False,
+    rate: options.RateOption = None,
+    rpm: options.RpmOption = None,
+    virtual: options.VirtualOption = None,
+    table: options.TableOption = False,
+    start: options.FromOption = None,
+    to: options.ToOption = None,
+    faster: options.FasterOption = None,
+    slower: options.SlowerOption = None,
+    updates: options.UpdatesOption = None,
+    interval_ms: options.IntervalOption = None,
+    time: options.TimeOption = None,
+    turns: options.TurnsOption = None,
+    steps: options.StepsOption = None,
+    halving: options.HalvingOption = False,
+    plot: options.PlotOption = None,
+    f_cpu: options.OscillatorOption = None,
+    clkpr: options.ClkprOption = None,
+    steps_per_turn: options.StepsPerTurnOption = None,
 ) -> None:
     """
-    Show every number that stepgen decides for a spec: wires, kernel, timer, range, cycles.
+    Show every number that stepgen decides for a spec, or the timer's numbers for a speed.
+
+    A SPEC gives wires, kernel, timer, range and cycles. Without one: a rate, or a speed change.
     """
+    rates = options.RateWish(rate, rpm, virtual, table)
+    change = options.ChangeWish(
+        *(start, to, faster, slower, updates, interval_ms),
+        *(time, turns, steps, halving, plot),
+    )
+    clock = options.ClockWish(f_cpu, clkpr, steps_per_turn)
+    options.choose_form(spec, rates, change, clock)
+    if spec is not None:
+        _show_spec(spec, as_json=as_json)
+    elif options.given(rates):
+        show_rates(rates, clock.clock, as_json=as_json)
+    else:
+        from stepgen.commands.plan_changes import show_change  # noqa: PLC0415 - draws with XML
+
+        show_change(change, clock.clock, as_json=as_json)
+
+
+def _show_spec(spec: Path, *, as_json: bool) -> None:
     decided = api.plan(spec)
     if as_json:
         say(json.dumps(plain(decided), indent=2, ensure_ascii=False))
@@ -59,7 +104,7 @@ def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
     yield ("ports", f"{motor.port_letters}, {'owned' if motor.owns_ports else 'shared'}")
     yield ("kernel", motor.kernel.kind)
     yield ("timer", f"{motor.timing.timer.number}, {motor.timing.kind}, {motor.timing.vector}")
-    yield ("motion", motor.motion)
+    yield ("motion", motor.motion.kind)
     yield ("steps per turn", _turn(motor))
     yield ("at rest", "coils off" if motor.releases_at_rest else "coils hold")
     yield ("step interrupt", f"{path.usual_cycles} cycles, response to RETI")

@@ -9,6 +9,7 @@ from stepgen.plan.kernels import Ring
 from stepgen.plan.model import MotorPlan
 
 THINK_BIT = 0
+CLOCK_BIT = 5
 _LINE_WIDTH = 31
 
 
@@ -42,6 +43,12 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
         f'[mode] "i"(&{motor.name}Mode)',
         f'[think] "I"({THINK_BIT})',
     ]
+    if motor.motion.watches_clock:
+        operands += [
+            f'[clock] "I"({CLOCK_BIT})',
+            f'[wake] "i"(&{motor.name}Wake)',
+            '[millis] "i"(&timer0_millis)',
+        ]
     kernel = motor.kernel
     if isinstance(kernel, Ring):
         operands.append(f'[ring] "i"({motor.name}Ring)')

@@ -9,6 +9,7 @@ from stepgen.library.hot_view import Line, instruction_lines, operand_lines
 from stepgen.library.kernel_view import Bits, KernelView, bit_groups, kernel_view
 from stepgen.library.prose import isr_contract, rest_comment, summary, wiring
 from stepgen.plan.model import MotorPlan
+from stepgen.plan.timings.fast_pwm import PRESCALERS
 
 _EXAMPLE_SPEED_SPS = 200  # slow enough for any motor, a 28BYJ-48 included
 
@@ -82,8 +83,10 @@ class MotorView:
     outputs: tuple[Bits, ...]
     elapsed: int
     elapsed_thinking: int
+    later_ticks: tuple[int, ...]
     isr_contract: tuple[str, ...]
     usual: tuple[Line, ...]
+    clock: tuple[Line, ...]
     rare: tuple[Line, ...]
     operands: tuple[Line, ...]
     wires: tuple[Named, ...]
@@ -106,7 +109,7 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
         turns=_turns(motor),
         kernel_name=motor.kernel.kind,
         timing_name=module_name(motor.timing.kind),
-        motion_name=module_name(motor.motion),
+        motion_name=module_name(motor.motion.kind),
         kernel=kernel_view(motor.kernel),
         timer=_timer_view(motor),
         vector=motor.timing.vector,
@@ -121,8 +124,10 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
         outputs=bit_groups(motor.drive.every_wire, mcu),
         elapsed=motor.elapsed_cycles,
         elapsed_thinking=motor.elapsed_thinking_cycles,
+        later_ticks=_ticks(motor.elapsed_thinking_cycles - motor.elapsed_cycles),
         isr_contract=isr_contract(motor),
         usual=instruction_lines(motor.hot_path.usual),
+        clock=instruction_lines(motor.hot_path.clock),
         rare=instruction_lines(motor.hot_path.boundary),
         operands=operand_lines(motor),
         wires=tuple(
@@ -132,6 +137,13 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
         turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",
         turn_text="turn" if motor.steps_per_turn else "way of 200 steps",
     )
+
+
+def _ticks(cycles: int) -> tuple[int, ...]:
+    """
+    Return *cycles* in ticks of the first three prescalers; the others' ticks are longer.
+    """
+    return tuple(cycles // prescaler for prescaler in PRESCALERS[:3])
 
 
 def module_name(kind: str) -> str:

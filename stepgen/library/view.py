@@ -5,6 +5,14 @@ The view: a plan as finished text, so that the templates print and decide nothin
 from dataclasses import dataclass
 
 from stepgen import __version__
+from stepgen.library.api_view import (
+    Definition,
+    codes,
+    constant_names,
+    control_bits,
+    function_names,
+    status_bits,
+)
 from stepgen.library.hot_view import THINK_BIT
 from stepgen.library.motor_view import MotorView, Named, module_name, motor_view
 from stepgen.library.prose import paragraph, takes, title
@@ -35,7 +43,12 @@ class LibraryView:
     f_cpu: str
     f_cpu_text: str
     claims: tuple[Named, ...]
+    control_bits: tuple[Definition, ...]
+    status_bits: tuple[Definition, ...]
+    codes: tuple[Definition, ...]
     constants: tuple[Named, ...]
+    motion_names: tuple[str, ...]
+    quick_setting: bool
     think_bit: int
     timing_name: str
     motors: tuple[MotorView, ...]
@@ -71,7 +84,12 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         f_cpu=f"{f_cpu}UL",
         f_cpu_text=frequency(f_cpu),
         claims=_claims(plan),
+        control_bits=control_bits(plan),
+        status_bits=status_bits(plan),
+        codes=codes(plan),
         constants=_constants(plan),
+        motion_names=tuple(sorted({motor.motion_name for motor in motors})),
+        quick_setting=any(motor.motion.watches_clock for motor in plan.motors),
         think_bit=THINK_BIT,
         timing_name=module_name(plan.motors[0].timing.kind),
         motors=motors,
@@ -113,29 +131,7 @@ def _constants(plan: Plan) -> tuple[Named, ...]:
 
 
 def _keywords(plan: Plan) -> tuple[Named, ...]:
-    functions = ["motorTimerGetIOclocksPerSecond", "motorTimerCalcPerSecond"]
-    parts = ("ShieldInit", "SetSpeed", "ReadStatus", "ReadPosition", "Hold", "Release")
-    for motor in plan.motors:
-        functions.extend(f"{motor.name}{part}" for part in parts)
-        if motor.steps_per_turn is not None:
-            functions.append(f"{motor.name}StepsForTurns")
-    constants = (
-        "MOTOR_CTRL_DRV_EN",
-        "MOTOR_CTRL_ENDPOINT_MILLIS",
-        "MOTOR_CTRL_DIRECTION",
-        "MOTOR_STAT_FAULT",
-        "MOTOR_STAT_TIMER_DIV_ERROR",
-        "MOTOR_STAT_REACHED",
-        "MOTOR_STAT_SPIN_FIXED",
-        "MOTOR_ERROR_TOO_FAST",
-        "MOTOR_ERROR_TOO_SLOW",
-        "MOTOR_ERROR_CONTROL",
-        "MOTOR_ERROR_RUNNING",
-        "MOTOR_WARN_NOT_ENABLED",
-        "MOTOR_MIN_TOP",
-        "MOTOR_MAX_TOP",
-    )
     return (
-        *(Named(name, "KEYWORD2") for name in functions),
-        *(Named(name, "LITERAL1") for name in constants),
+        *(Named(name, "KEYWORD2") for name in function_names(plan)),
+        *(Named(name, "LITERAL1") for name in constant_names(plan)),
     )

@@ -36,6 +36,9 @@ class CoilDrive:
         enables: Wires that are HIGH while the motor is driven, LOW when it is released.
         quiet: Wires that stay LOW for ever.
         released: The wires, of either kind, that go LOW when the coils are switched off.
+        shared_enables: Whether another drive has the same enables: they are HIGH while either
+            motor is driven.
+        pins_way_out: What the user can do about a pin that somebody else has.
     """
 
     kind: str
@@ -46,6 +49,8 @@ class CoilDrive:
     enables: tuple[Wire, ...]
     quiet: tuple[Wire, ...]
     released: tuple[Wire, ...]
+    shared_enables: bool = False
+    pins_way_out: str = "give one of them other pins"
 
     @property
     def every_wire(self) -> tuple[Wire, ...]:
@@ -91,13 +96,20 @@ def patterns_by_port(drive: CoilDrive, ports: tuple[Port, ...]) -> tuple[PortPat
     On several ports a step is one write per port to switch off what the next phase does not
     drive, and one to switch on what it does. The last port needs just one write for both, so
     the port with the most wires comes last: two wires that trade places there do so at once.
+    Before all others, a port with wires that only turn a coil's current comes last: they change
+    between switching off and switching on, while the coil that they turn is off.
     """
+    turning = bits_by_port(tuple(wire for wire in drive.wires if wire not in drive.released))
     by_letter = {port.letter: port for port in ports}
     shares = [
         PortPatterns(by_letter[letter], mask, tuple(_value(drive, letter, p) for p in drive.phases))
         for letter, mask in bits_by_port(drive.wires).items()
     ]
-    return tuple(sorted(shares, key=lambda share: (share.mask.bit_count(), share.port.letter)))
+
+    def rank(share: PortPatterns) -> tuple[bool, int, str]:
+        return (share.port.letter in turning, share.mask.bit_count(), share.port.letter)
+
+    return tuple(sorted(shares, key=rank))
 
 
 def _value(drive: CoilDrive, letter: str, pattern: Pattern) -> int:

@@ -6,11 +6,12 @@ its length is known before anything is compiled.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from stepgen.devices import Mcu, Port, Register
 from stepgen.plan.kernels import Kernel, PortWrite, Ring, Toggle
 
+_CLOCK_TAKEN_CYCLES = 1  # SBRC that does not skip and RJMP, against SBRC that does
 _VECTOR_JUMP_CYCLES = 3  # the JMP in the vector table
 
 
@@ -69,14 +70,38 @@ class Storage:
 
 
 @dataclass(frozen=True)
+class Motion:
+    """
+    What a motion asks of the step interrupt; cycles are more than those of constant speed.
+
+    Args:
+        kind: The spec's name of the motion.
+        watches_clock: Whether each step looks if the clock has come to a moment to wake up at.
+        handler_cycles: How much longer the handler of the rare ways can take.
+        to_clock_cycles: How much later it starts the clock of a timer that it sets anew.
+        thinking_cycles: The same when it made the step itself.
+        masked_cycles: Longest stretch of a call of the library with interrupts off.
+    """
+
+    kind: str
+    watches_clock: bool
+    handler_cycles: int
+    to_clock_cycles: int
+    thinking_cycles: int
+    masked_cycles: int
+
+
+@dataclass(frozen=True)
 class HotPath:
     """
     The step interrupt: its usual way, and the way out to the boundary.
 
     Args:
         usual: From the vector to RETI, when nothing but a step is due.
+        clock: What follows label 3: a look at the clock; empty where no motion needs one.
         boundary: What follows label 1: the last step of a run, then the boundary handler.
         usual_cycles: Response, vector, all of *usual*.
+        clock_cycles: The same with a look at the clock.
         edge_cycles: From the timer's flag to the end of the last port write, on the usual way.
         boundary_edge_cycles: The same on the boundary's way.
         boundary_entry_cycles: From the flag to the first instruction of the boundary handler.
@@ -84,8 +109,10 @@ class HotPath:
     """
 
     usual: tuple[Instruction, ...]
+    clock: tuple[Instruction, ...]
     boundary: tuple[Instruction, ...]
     usual_cycles: int
+    clock_cycles: int
     edge_cycles: int
     boundary_edge_cycles: int
     boundary_entry_cycles: int
@@ -105,9 +132,14 @@ def allocate(mcu: Mcu, names: Iterable[str]) -> tuple[Storage, ...]:
     )
 
 
-def compose(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str) -> HotPath:
+def compose(
+    kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, *, watches_clock: bool = False
+) -> HotPath:
     """
     Return the step interrupt of *kernel*; its rare ways go on in the function *handler*.
+
+    With *watches_clock* each step first looks whether the clock has come to the motor's next
+    moment; the handler then goes before the step, and the count has not been touched.
     """
     saved = _saved(kernel)
     entry = (
@@ -141,19 +173,55 @@ def compose(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str) -> HotPath
         *leave[1:],
         Instruction(f"jmp   {handler}", 3),
     )
+    look, clock = _clock_watch() if watches_clock else ((), ())
+    if watches_clock:
+        count = (replace(count[0], label="4"), *count[1:])
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
-    until_step = arrival + _cycles(entry + count)
+    until_count = arrival + _cycles(entry + look)
+    until_step = until_count + _cycles(count)
     until_rare_step = until_step + 1 + _cycles(think)
-    usual = (*entry, *count, *step, *leave, Instruction("reti", mcu.response_cycles))
+    usual = (*entry, *look, *count, *step, *leave, Instruction("reti", mcu.response_cycles))
+    looked = _CLOCK_TAKEN_CYCLES + _cycles(clock) if watches_clock else 0
+    due = until_count + looked if watches_clock else until_rare_step + 1
     return HotPath(
         usual=usual,
+        clock=clock,
         boundary=(*think, *step, *out),
         usual_cycles=arrival + _cycles(usual),
+        clock_cycles=arrival + _cycles(usual) + looked,
         edge_cycles=until_step + _cycles_to_edge(step),
-        boundary_edge_cycles=until_rare_step + _cycles_to_edge(step),
-        boundary_entry_cycles=until_rare_step + _cycles(step + out),
-        think_entry_cycles=until_rare_step + 1 + _cycles(out),
+        boundary_edge_cycles=until_rare_step + looked + _cycles_to_edge(step),
+        boundary_entry_cycles=until_rare_step + looked + _cycles(step + out),
+        think_entry_cycles=due + _cycles(out),
     )
+
+
+def _clock_watch() -> tuple[tuple[Instruction, ...], tuple[Instruction, ...]]:
+    """
+    Return the test whether to look at the clock, and the look: label 3, back to 4 or on to 2.
+
+    The lower 16 bits of millis() less the moment to wake up at: negative as long as it is not
+    there, since that moment is never set further ahead than 32 767 ms.
+    """
+    look = (
+        Instruction("lds   r24, %[mode]", 2),
+        Instruction("sbrc  r24, %[clock]", 2, "while the clock decides something:"),
+        Instruction("rjmp  3f", 0, "look at it"),
+    )
+    clock = (
+        Instruction("push  r25", 2, label="3"),
+        Instruction("lds   r24, %[millis]", 2, "millis(), lower half,"),
+        Instruction("lds   r25, %[wake]", 2, "less the moment to wake up at"),
+        Instruction("sub   r24, r25", 1),
+        Instruction("lds   r24, %[millis] + 1", 2),
+        Instruction("lds   r25, %[wake] + 1", 2),
+        Instruction("sbc   r24, r25", 1),
+        Instruction("pop   r25", 2),
+        Instruction("sbrs  r24, 7", 2, "negative: not yet"),
+        Instruction("rjmp  2f", 0),
+        Instruction("rjmp  4b", 2),
+    )
+    return look, clock
 
 
 def _cycles(instructions: Iterable[Instruction]) -> int:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from stepgen.devices import Board, Timer16
 from stepgen.plan.coils import CoilDrive
-from stepgen.plan.isr import HotPath, Storage
+from stepgen.plan.isr import HotPath, Motion, Storage
 from stepgen.plan.kernels import Kernel
 from stepgen.spec import Library
 
@@ -47,7 +47,7 @@ class MotorPlan:
 
     Args:
         name: Its name in the spec: the prefix of its functions.
-        motion: The kind of its motion.
+        motion: What its motion asks of the step interrupt.
         drive: How its coils are connected and what they see.
         kernel: How one step changes the ports.
         timing: What paces it.
@@ -60,7 +60,7 @@ class MotorPlan:
     """
 
     name: str
-    motion: str
+    motion: Motion
     drive: CoilDrive
     kernel: Kernel
     timing: TimerPlan
@@ -76,21 +76,33 @@ class MotorPlan:
         """
         Return the cycles from a due step until the boundary handler has set the timer anew.
         """
-        return self.hot_path.boundary_entry_cycles + self.kernel.handler.to_clock
+        return (
+            self.hot_path.boundary_entry_cycles
+            + self.kernel.handler.to_clock
+            + self.motion.to_clock_cycles
+        )
 
     @property
     def elapsed_thinking_cycles(self) -> int:
         """
         Return the same where the handler itself made the step, because of a millisecond limit.
         """
-        return self.hot_path.think_entry_cycles + self.kernel.handler.to_clock_thinking
+        return (
+            self.hot_path.think_entry_cycles
+            + self.kernel.handler.to_clock_thinking
+            + self.motion.thinking_cycles
+        )
 
     @property
     def isr_bound_cycles(self) -> int:
         """
         Return the longest that its step interrupt may take, from the response through RETI.
         """
-        return self.hot_path.boundary_entry_cycles + self.kernel.handler.longest
+        return (
+            self.hot_path.boundary_entry_cycles
+            + self.kernel.handler.longest
+            + self.motion.handler_cycles
+        )
 
     @property
     def port_letters(self) -> str:

@@ -2,10 +2,10 @@
 From a spec to a plan: boards, pins, timers, kernels, and every conflict between them.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from stepgen.devices import SKETCH_LIBRARIES, Board, boards, find_board, library_claims
+from stepgen.devices import Board, boards, find_board
 from stepgen.plan.claims import (
     Claim,
     drive_claims,
@@ -19,12 +19,13 @@ from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Storage, allocate, compose
 from stepgen.plan.kernels import Kernel, choose_kernel
 from stepgen.plan.model import MotorPlan, Plan, TimerPlan
+from stepgen.plan.motions import plan_motion
 from stepgen.plan.timings import plan_timing
 from stepgen.plan.timings.fast_pwm import LARGEST_PERIOD_CYCLES
+from stepgen.plan.uses import Use, read_uses
 from stepgen.spec import LoadedSpec, Motor
 
 _OTHER_INTERRUPTS_CYCLES = 110  # the core's millis interrupt
-_MASKED_CYCLES = 260  # the longest stretch of the library's own calls with interrupts off
 _SMALLEST_PERIOD_CYCLES = 640  # system 1: 25 000 steps/s at 16 MHz
 
 
@@ -43,13 +44,10 @@ def make_plan(loaded: LoadedSpec) -> Plan:
         faults.at("board").report(f"is no board that stepgen knows; choose one of {names}")
         faults.raise_if_any()
         raise AssertionError
-    _check_uses(spec.uses, board, faults)
-    timings = _plan_timings(loaded, board, faults)
-    parts = {
-        name: (plan_drive(motor.drive, board, _at(faults, name).at("drive")), timings[name])
-        for name, motor in spec.motors.items()
-    }
-    report_conflicts(_claims(loaded, board, parts, faults))
+    uses = read_uses(spec.uses, board, lambda at, reason: faults.at("uses", at).report(reason))
+    timings = _plan_timings(loaded, uses.values(), board, faults)
+    parts = {name: (_drive(loaded, name, board, faults), timings[name]) for name in spec.motors}
+    report_conflicts(_claims(uses, board, parts, faults))
     storages = allocate(board.mcu, spec.motors)
     motors = [
         _plan_motor(name, motor, parts[name], storage, (board, _at(faults, name)))
@@ -61,11 +59,18 @@ def make_plan(loaded: LoadedSpec) -> Plan:
         library=spec.library,
         board=board,
         motors=planned,
-        masked_bound_cycles=_MASKED_CYCLES,
+        masked_bound_cycles=_masked_bound_cycles(planned),
         minimum_period_cycles=_minimum_period_cycles(planned),
         largest_period_cycles=LARGEST_PERIOD_CYCLES,
         uses=spec.uses,
     )
+
+
+def _masked_bound_cycles(motors: tuple[MotorPlan, ...]) -> int:
+    """
+    Return the longest stretch of the library's own calls with interrupts off.
+    """
+    return max((motor.motion.masked_cycles for motor in motors), default=0)
 
 
 def _minimum_period_cycles(motors: tuple[MotorPlan, ...]) -> int:
@@ -81,7 +86,7 @@ def _minimum_period_cycles(motors: tuple[MotorPlan, ...]) -> int:
     every = sum(motor.isr_bound_cycles for motor in motors)
     for motor in motors:
         own = motor.isr_bound_cycles
-        others = every - own + _OTHER_INTERRUPTS_CYCLES + _MASKED_CYCLES
+        others = every - own + _OTHER_INTERRUPTS_CYCLES + _masked_bound_cycles(motors)
         shortest = max(shortest, others + own // 2 + 1)
     return shortest
 
@@ -90,16 +95,15 @@ def _at(faults: Faults, motor: str) -> Faults:
     return faults.at("motors", motor)
 
 
-def _check_uses(uses: tuple[str, ...], board: Board, faults: Faults) -> None:
-    for index, name in enumerate(uses):
-        if library_claims(name, board) is None:
-            known = ", ".join(n for n in SKETCH_LIBRARIES if library_claims(n, board))
-            faults.at("uses", index).report(
-                f"stepgen does not know what {name} takes on the {board.title}; it knows {known}"
-            )
+def _drive(loaded: LoadedSpec, motor: str, board: Board, faults: Faults) -> CoilDrive | None:
+    motors = loaded.spec.motors
+    beside = [other.drive for name, other in motors.items() if name != motor]
+    return plan_drive(motors[motor].drive, beside, board, _at(faults, motor).at("drive"))
 
 
-def _plan_timings(loaded: LoadedSpec, board: Board, faults: Faults) -> dict[str, TimerPlan | None]:
+def _plan_timings(
+    loaded: LoadedSpec, uses: Iterable[Use], board: Board, faults: Faults
+) -> dict[str, TimerPlan | None]:
     """
     Return each motor's timer; those that name one choose before those that take what is free.
     """
@@ -107,7 +111,7 @@ def _plan_timings(loaded: LoadedSpec, board: Board, faults: Faults) -> dict[str,
     named = {name for name, motor in motors.items() if _timer(motor) is not None}
     plans: dict[str, TimerPlan | None] = {}
     for name in sorted(motors, key=lambda name: name not in named):
-        free = free_timers(board, loaded.spec.uses, plans.values())
+        free = free_timers(board, uses, plans.values())
         place = _at(faults, name).at("timing")
         plans[name] = plan_timing(motors[name].timing, board, free, place)
     return plans
@@ -119,36 +123,30 @@ def _timer(motor: Motor) -> int | None:
 
 
 def free_timers(
-    board: Board, uses: tuple[str, ...], taken: Iterable[TimerPlan | None]
+    board: Board, uses: Iterable[Use], taken: Iterable[TimerPlan | None]
 ) -> tuple[int, ...]:
     """
     Return the 16-bit timers of *board* that neither *uses* nor the plans in *taken* need.
     """
     busy = {plan.timer.number for plan in taken if plan}
-    for name in uses:
-        library = library_claims(name, board)
-        if library:
-            several = library.objects_per_timer is not None
-            busy.update(library.timers[:1] if several else library.timers)
+    busy.update(number for use in uses for number in use.timers)
     numbers = (timer.number for timer in board.mcu.timers16)
     return tuple(number for number in numbers if number not in busy)
 
 
 def _claims(
-    loaded: LoadedSpec,
+    uses: Mapping[int, Use],
     board: Board,
     parts: dict[str, tuple[CoilDrive | None, TimerPlan | None]],
     faults: Faults,
 ) -> Iterable[Claim]:
-    uses = loaded.spec.uses
-    free = free_timers(board, uses, (timing for _, timing in parts.values()))
-    yield from sketch_claims(board, uses, faults)
+    free = free_timers(board, uses.values(), (timing for _, timing in parts.values()))
+    motors: list[Claim] = []
     for name, (drive, timing) in parts.items():
         place = _at(faults, name)
-        if drive:
-            yield from drive_claims(name, drive, place)
-        if timing:
-            yield from timing_claims(name, timing, free, place)
+        motors.extend(drive_claims(name, drive, place) if drive else ())
+        motors.extend(timing_claims(name, timing, free, place) if timing else ())
+    return (*sketch_claims(uses, board, motors, faults), *motors)
 
 
 def _plan_motor(
@@ -167,15 +165,16 @@ def _plan_motor(
         return None
     # avr-gcc takes a function for an interrupt handler only when it is called __vector...
     handler = f"__vector_{name}_boundary"
+    motion = plan_motion(motor.motion)
     return MotorPlan(
         name=name,
-        motion=motor.motion.kind,
+        motion=motion,
         drive=drive,
         kernel=kernel,
         timing=timing,
         storage=storage,
         handler=handler,
-        hot_path=compose(kernel, storage, board.mcu, handler),
+        hot_path=compose(kernel, storage, board.mcu, handler, watches_clock=motion.watches_clock),
         steps_per_turn=_steps_per_turn(motor, drive),
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from stepgen.reference.contract import MotionKind
 from stepgen.reference.sequences import Pattern
 from stepgen.reference.timer import FASTEST_CYCLES, SLOWEST_CYCLES
 
@@ -22,12 +23,14 @@ class MotorFacts:
         coils_off: The pattern without current.
         minimum_cycles: The smallest virtual value that is accepted, 4 to 65535 * 1024.
         at_rest: Whether the coils stay on when the motor stops.
+        motion: Whether its library has update events.
     """
 
     phases: tuple[Pattern, ...]
     coils_off: Pattern
     minimum_cycles: int
     at_rest: Literal["hold", "release"]
+    motion: MotionKind = "constant"
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:

@@ -49,3 +49,13 @@ def lead_bound_from_start_cycles(intervals: int, prescaler: int) -> int:
     the first interval is up to p - 1 cycles shorter than a period.
     """
     return (intervals + 1) * prescaler
+
+
+def ideal_halvings_cycles(modification: int, updates: int) -> Fraction:
+    """
+    Return the sum of n >= 1 changes m, m / 2, m / 4 ...: m * (2 - 2^(1 - n)).
+
+    The integer model truncates each halving: what it has after k of them is less than 1 below
+    m / 2^k, so that its sum is never more than this one and at most n - 1 less.
+    """
+    return modification * (2 - Fraction(2, 2**updates))

@@ -1,18 +1,21 @@
 """
 The integer model: predicts every edge of one motor exactly, from what happens to it.
 
-Motion ``constant``, timing fast PWM mode 15. The contract is the table of
-systems/1-motor-driver.md; the timer is in `stepgen.reference.timer`.
+Motions ``constant`` and ``update-events``, timing fast PWM mode 15. The contract is the table
+of systems/1-motor-driver.md; the timer is in `stepgen.reference.timer`.
 """
 
 from typing import assert_never
 
 from stepgen.reference.axis import Axis, wrapped_int32
-from stepgen.reference.contract import Code, Control, Status, fault_bits, stops, verdict
+from stepgen.reference.contract import Code, Control, Status
+from stepgen.reference.engine import Engine
 from stepgen.reference.facts import MotorFacts, ServiceCycle, served_at_once
-from stepgen.reference.motion import ConstantMotion
+from stepgen.reference.notices import CallbackMade
+from stepgen.reference.pace import Pace
 from stepgen.reference.stimuli import (
     Call,
+    Callbacks,
     ClockOn,
     Edge,
     Hold,
@@ -21,8 +24,9 @@ from stepgen.reference.stimuli import (
     Release,
     SetSpeed,
     Stimulus,
+    UpdateCheck,
 )
-from stepgen.reference.timer import first_overflow_cycle
+from stepgen.reference.verdict import fault_bits, stops, verdict
 
 
 class MotorModel:
@@ -31,9 +35,12 @@ class MotorModel:
 
     A deadline is the cycle at which the timer sets TOV. Its interrupt is served at
     ``service_cycle(deadline)``, the deadline or later. What is served up to and including
-    the commit of a call belongs to the calls before it; the millis limit is judged with the
-    last `MillisTick` at or before the service. Deadlines are absolute: a late service delays
-    none of the following.
+    the commit of a call belongs to the calls before it; a millis limit and the update events of
+    the interrupt are judged with the last `MillisTick` at or before the service. Deadlines are
+    absolute: a late service delays none of the following.
+
+    An update event acts from the first deadline after it. One that is due at the step that
+    ends the motion, or while a passed millis limit lets no step come, does not happen.
 
     MISSED is not predicted: in fast PWM the hardware cannot tell a missed period.
 
@@ -50,24 +57,20 @@ class MotorModel:
         *,
         position: int = 0,
     ) -> None:
-        self._releases = facts.at_rest == "release"
-        self._minimum_cycles = facts.minimum_cycles
-        self._service_cycle = service_cycle
+        self._facts = facts
         self._axis = Axis(facts.phases, facts.coils_off, wrapped_int32(position))
+        self._engine = Engine(facts, self._axis, Pace(service_cycle))
+        self._notices = self._engine.notices
         self._now_cycle = 0
-        self._millis = 0
         self._codes: list[Code] = []
-        self._status = Status(0)
-        self._motion: ConstantMotion | None = None
-        self._releasing: ConstantMotion | None = None  # done, its coils go off one interval later
-        self._deadline_cycle: int | None = None
 
     @property
     def status(self) -> Status:
         """
-        Return the status bits; SPIN_FIXED while running.
+        Return the status bits; SPIN_FIXED while running with no update event left.
         """
-        return self._status | Status.SPIN_FIXED if self.running else self._status
+        fixed = self.running and self.updates_left == 0
+        return self._notices.status | Status.SPIN_FIXED if fixed else self._notices.status
 
     @property
     def position(self) -> int:
@@ -81,14 +84,36 @@ class MotorModel:
         """
         Tell whether a step may still come; the release after the last step is none.
         """
-        return self._motion is not None
+        return self._engine.running
 
     @property
     def steps_left(self) -> int | None:
         """
         Return the steps still to be made: 0 at rest, None without a steps limit.
         """
-        return self._motion.steps_left if self._motion else 0
+        motion = self._engine.motion
+        return motion.steps_left if motion and self.running else 0
+
+    @property
+    def virtual_cycles(self) -> int:
+        """
+        Return the virtual value: at rest what an end point left of it, 0 after a stop or Init.
+        """
+        return self._engine.motion.virtual_cycles if self._engine.motion else 0
+
+    @property
+    def modification(self) -> int:
+        """
+        Return what the next update event changes the virtual value by; at rest likewise.
+        """
+        return self._engine.motion.modification if self._engine.motion else 0
+
+    @property
+    def updates_left(self) -> int:
+        """
+        Return how many update events have not happened; at rest likewise.
+        """
+        return self._engine.motion.updates_left if self._engine.motion else 0
 
     @property
     def return_codes(self) -> tuple[Code, ...]:
@@ -97,16 +122,23 @@ class MotorModel:
         """
         return tuple(self._codes)
 
+    @property
+    def callbacks(self) -> tuple[CallbackMade, ...]:
+        """
+        Return each callback so far, with the commit of the `UpdateCheck` that made it.
+        """
+        return tuple(self._notices.made)
+
     def status_at(self, cycle: int, millis: int) -> Status:
         """
         Return what ``motorReadStatus()`` shows at *cycle*, while ``millis()`` returns *millis*.
 
         It shows REACHED as soon as a millis limit has passed, before the due moment at
-        which the step is not made; until then the motor also counts as running.
+        which the step is not made; until then the motor also counts as running. An
+        `UpdateCheck` in between notices it too, and makes the callback; reading does not.
         """
         self._serve_until(cycle)
-        ended = self._motion is not None and self._motion.ended_at(millis)
-        return self.status | Status.REACHED if ended else self.status
+        return self.status | Status.REACHED if self._engine.ended_at(millis) else self.status
 
     def advance(self, cycle: int) -> list[Edge]:
         """
@@ -120,7 +152,7 @@ class MotorModel:
 
     def apply(self, stimulus: Stimulus) -> int:
         """
-        Let *stimulus* happen and return the code of the call, 0 if it is none.
+        Let *stimulus* happen and return the code of the call, 0 if it has none.
 
         Raises:
             ValueError: The stimulus lies before what has already happened.
@@ -129,12 +161,18 @@ class MotorModel:
             self._millis_tick(stimulus)
             return Code.FINE
         self._serve_until(stimulus.cycle)
-        if isinstance(stimulus, ClockOn):
-            self._clock_on(stimulus)
-            return Code.FINE
-        code = self._call(stimulus)
-        self._codes.append(code)
-        return code
+        match stimulus:
+            case ClockOn():
+                self._engine.pace.clock_on(stimulus)
+            case Callbacks():
+                self._notices.has_reached_callback = stimulus.reached
+                self._notices.has_fault_callback = stimulus.fault
+            case UpdateCheck():
+                self._engine.update_check(stimulus.cycle)
+            case _:
+                self._codes.append(self._call(stimulus))
+                return self._codes[-1]
+        return Code.FINE
 
     def _call(self, call: Call) -> Code:
         match call:
@@ -147,40 +185,32 @@ class MotorModel:
         assert_never(call)
 
     def _init(self, call: Init) -> Code:
-        self._motion = self._releasing = self._deadline_cycle = None
-        self._status = Status(0)
+        self._engine.forget()
+        self._notices.clear()
         self._axis.init(call.cycle, len(self._codes))
         return Code.FINE
 
     def _set_speed(self, call: SetSpeed) -> Code:
-        code = verdict(call.control, call.virtual_cycles, self._minimum_cycles)
+        code = verdict(call, self._facts)
         if code < 0:
-            self._status |= fault_bits(code)
-        elif stops(call.control, call.virtual_cycles):
+            self._notices.fault(fault_bits(code))
+        elif stops(call):
             self._stop(call)
         else:
-            self._start(call)
+            self._engine.start(call, len(self._codes))
         return code
 
     def _stop(self, call: SetSpeed) -> None:
-        self._motion = self._releasing = self._deadline_cycle = None
-        self._status |= Status.REACHED
-        if self._releases or not call.control & Control.DRV_EN:
+        self._engine.forget()
+        self._notices.stopped()
+        if self._facts.at_rest == "release" or not call.control & Control.DRV_EN:
             self._axis.switch(call.cycle, on=False, call_index=len(self._codes))
-
-    def _start(self, call: SetSpeed) -> None:
-        index = len(self._codes)
-        if not self.running:
-            self._releasing = self._deadline_cycle = None  # the ClockOn begins the first interval
-            self._axis.switch(call.cycle, on=True, call_index=index)
-        self._status = Status(0)
-        self._motion = ConstantMotion.of(call, index, self._millis)
 
     def _set_rest(self, call: Hold | Release) -> Code:
         if self.running:
-            self._status |= fault_bits(Code.RUNNING)
+            self._notices.fault(fault_bits(Code.RUNNING))
             return Code.RUNNING
-        self._releasing = self._deadline_cycle = None
+        self._engine.rest()
         self._axis.switch(call.cycle, on=isinstance(call, Hold), call_index=len(self._codes))
         return Code.FINE
 
@@ -189,15 +219,7 @@ class MotorModel:
         if tick.cycle > self._now_cycle:
             self._serve_until(tick.cycle - 1)  # a service in the very cycle sees the new value
             self._now_cycle = tick.cycle
-        self._millis = tick.millis
-
-    def _clock_on(self, clock: ClockOn) -> None:
-        """
-        Take the next deadline from this clock, if it has the prescaler that the call asks for.
-        """
-        paced = self._motion or self._releasing
-        if paced is not None and clock.prescaler == paced.setting.prescaler:
-            self._deadline_cycle = first_overflow_cycle(clock.cycle, clock.tcnt, paced.setting)
+        self._engine.millis = tick.millis
 
     def _require_order(self, cycle: int) -> None:
         if cycle < self._now_cycle:
@@ -205,44 +227,5 @@ class MotorModel:
 
     def _serve_until(self, cycle: int) -> None:
         self._require_order(cycle)
-        while self._deadline_cycle is not None:
-            deadline = self._deadline_cycle
-            service = self._service_cycle(deadline)
-            if service < deadline:
-                raise ValueError(f"deadline {deadline} served too early, at {service}")
-            if service > cycle:
-                break
-            self._serve(deadline)
+        self._engine.serve_until(cycle)
         self._now_cycle = cycle
-
-    def _serve(self, deadline: int) -> None:
-        motion = self._motion
-        if motion is None:
-            self._release(deadline)
-        elif motion.ended_at(self._millis):
-            self._end(motion)
-            self._release(deadline)
-        else:
-            self._axis.step(deadline, motion.direction, motion.call_index)
-            self._deadline_cycle = deadline + motion.setting.period_cycles
-            if motion.count_step():
-                self._end(motion)
-
-    def _end(self, motion: ConstantMotion) -> None:
-        """
-        End *motion* at its end point; with ``release`` its next deadline is one more.
-        """
-        self._motion = None
-        self._status |= Status.REACHED
-        if self._releases:
-            self._releasing = motion
-        else:
-            self._deadline_cycle = None
-
-    def _release(self, deadline: int) -> None:
-        """
-        Switch the coils off at this deadline if the motion that ended releases them.
-        """
-        if self._releasing is not None:
-            self._axis.switch(deadline, on=False, call_index=self._releasing.call_index)
-        self._releasing = self._deadline_cycle = None

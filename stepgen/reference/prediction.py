@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from stepgen.reference.contract import Code, Status
 from stepgen.reference.facts import MotorFacts, ServiceCycle, served_at_once
 from stepgen.reference.integer import MotorModel
+from stepgen.reference.notices import CallbackMade
 from stepgen.reference.stimuli import Edge, Stimulus
 
 
@@ -23,6 +24,7 @@ class Prediction:
     position: int
     running: bool
     steps_left: int | None
+    callbacks: tuple[CallbackMade, ...] = ()
 
 
 def predict(
@@ -47,4 +49,5 @@ def predict(
         position=model.position,
         running=model.running,
         steps_left=model.steps_left,
+        callbacks=model.callbacks,
     )

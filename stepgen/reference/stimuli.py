@@ -12,6 +12,7 @@ from stepgen.reference.contract import ALL_CONTROL_BITS
 from stepgen.reference.sequences import Pattern
 from stepgen.reference.timer import COUNTER_STATES, PRESCALERS
 
+UINT16_STATES = 1 << 16
 UINT32_STATES = 1 << 32
 
 
@@ -25,17 +26,27 @@ class SetSpeed:
         control: Control bits, 0 to 255.
         virtual_cycles: I/O clocks between two steps, 32 bits; 0 stops.
         limit: Steps, or milliseconds with ENDPOINT_MILLIS, 32 bits; 0 = endless.
+        modification: What the first update event changes the virtual value by, 32 bits.
+        update_interval: Milliseconds, or steps with UPDATE_STEPS, between two update events,
+            16 bits.
+        update_count: How many update events there are at most, 16 bits.
     """
 
     cycle: int
     control: int
     virtual_cycles: int
     limit: int = 0
+    modification: int = 0
+    update_interval: int = 0
+    update_count: int = 0
 
     def __post_init__(self) -> None:
         _need("control", self.control, ALL_CONTROL_BITS + 1)
         _need("virtual_cycles", self.virtual_cycles, UINT32_STATES)
         _need("limit", self.limit, UINT32_STATES)
+        _need("modification", self.modification, UINT32_STATES)
+        _need("update_interval", self.update_interval, UINT16_STATES)
+        _need("update_count", self.update_count, UINT16_STATES)
 
 
 @dataclass(frozen=True)
@@ -94,8 +105,33 @@ class Init:
     cycle: int
 
 
+@dataclass(frozen=True)
+class UpdateCheck:
+    """
+    A call of ``motorTimerUpdateCheck``, at the moment it masks the interrupts; it has no code.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class Callbacks:
+    """
+    From this cycle on these callbacks are registered; before the first, none is.
+
+    Args:
+        cycle: The moment at which it is so.
+        reached: Whether ``motorCallBackPositionReached`` has been given a function.
+        fault: Whether ``motorCallBackFault`` has been given one.
+    """
+
+    cycle: int
+    reached: bool
+    fault: bool
+
+
 Call = SetSpeed | Hold | Release | Init
-Stimulus = Call | ClockOn | MillisTick
+Stimulus = Call | UpdateCheck | Callbacks | ClockOn | MillisTick
 
 
 class EdgeKind(StrEnum):

@@ -125,6 +125,10 @@ MotorEntry = Annotated[Motor, BeforeValidator(_long_form)]
 class Spec(SpecModel):
     """
     Everything that decides a library.
+
+    ``uses`` names what else the sketch uses of the chip, so that conflicts are found:
+    ``[Servo, Serial]``. Behind what works on pins of the sketch's choice may stand those pins:
+    ``[analogWrite D9 D10, tone D8, SoftwareSerial D2 D3, Servo D5 D6]``; analogWrite needs them.
     """
 
     library: Annotated[Library, BeforeValidator(_as_library)]

@@ -13,7 +13,7 @@ from stepgen.plan.model import Plan
 from stepgen.verify.simavr import Machine
 from stepgen.verify.simavr.events import Events
 
-_MAILBOX = Struct("<BBBBIIbBi")
+_MAILBOX = Struct("<BBBBIIIHHbBi")
 _LOOP_OFFSET = 2
 _MARK_BEGIN, _MARK_END, _MARK_READY = 1, 2, 3
 _SETUP_CYCLES = 2_000_000
@@ -40,6 +40,8 @@ class CallKind(IntEnum):
     RELEASE = 3
     READ = 4
     INIT = 5
+    UPDATE_CHECK = 6
+    CALLBACKS = 7
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,9 @@ class Call:
     control: int = 0
     top: int = 0
     limit: int = 0
+    modification: int = 0
+    interval: int = 0
+    count: int = 0
 
 
 @dataclass(frozen=True)
@@ -117,9 +122,7 @@ class Bench:
             StepgenError: The sketch did not get round to it, or did not return.
         """
         loop = self.machine.read_ram(self._mailbox + _LOOP_OFFSET, 1)[0]
-        message = _MAILBOX.pack(
-            call.kind, call.motor, loop, call.control, call.top, call.limit, 0, 0, 0
-        )
+        message = _MAILBOX.pack(*_arguments(call, loop), 0, 0, 0)
         self.machine.write_ram(self._mailbox, message)
         begin = self._run_to_mark(_MARK_BEGIN, call)
         self.machine.fine = True
@@ -150,6 +153,14 @@ class Bench:
             if self.machine.cycle > start + _ANSWER_CYCLES:
                 raise StepgenError.of(f"the sketch hangs after {call}", place=str(self.elf))
             self.machine.run_until(self.machine.cycle + 1)
+
+
+def _arguments(call: Call, loop: int) -> tuple[int, ...]:
+    """
+    Return the fields of the mailbox that come before its answer.
+    """
+    update = (call.modification, call.interval, call.count)
+    return (call.kind, call.motor, loop, call.control, call.top, call.limit, *update)
 
 
 def watched_registers(plan: Plan) -> list[int]:

@@ -14,6 +14,8 @@ from stepgen.verify.cache import build_once, content_key
 from stepgen.verify.toolchain import Build, Compiler, Target, build, empty_sketch
 
 BENCH_TEMPLATE = "verify/bench.cpp.j2"
+_ARGUMENTS = "control, top, limit"
+_MORE_ARGUMENTS = ", modification, interval, count"
 
 
 @dataclass(frozen=True)
@@ -30,12 +32,14 @@ class FreeBits:
 @dataclass(frozen=True)
 class BenchView:
     """
-    What the bench sketch is allowed to do beside the motors.
+    What the bench sketch may do beside the motors, and how it calls each of them.
     """
 
     free_bits: tuple[FreeBits, ...]
     free_groups: tuple[FreeBits, ...]
     free_pins: tuple[int, ...]
+    changing: tuple[str, ...]
+    arguments: dict[str, str]
 
 
 @dataclass(frozen=True)
@@ -128,7 +132,14 @@ def _bench_view(plan: Plan) -> BenchView:
         if mask >> bit & 1 and _single_bit_is_atomic(mcu, letter)
     ]
     pins = [pin.number for pin in plan.board.pins if masks.get(pin.bit.port, 0) >> pin.bit.bit & 1]
+    changing = tuple(m.name for m in plan.motors if m.motion.kind == "update-events")
+    arguments = {
+        motor.name: _ARGUMENTS + (_MORE_ARGUMENTS if motor.name in changing else "")
+        for motor in plan.motors
+    }
     return BenchView(
+        changing=changing,
+        arguments=arguments,
         free_bits=tuple(bits),
         free_groups=tuple(_free(mcu.port(letter), mask) for letter, mask in masks.items() if mask),
         free_pins=tuple(pins),

@@ -10,6 +10,7 @@ from enum import IntEnum
 from stepgen.plan.model import Plan
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.stimuli import (
+    Callbacks,
     ClockOn,
     Edge,
     Hold,
@@ -18,6 +19,7 @@ from stepgen.reference.stimuli import (
     Release,
     SetSpeed,
     Stimulus,
+    UpdateCheck,
 )
 from stepgen.verify.bench import Answer, CallKind
 from stepgen.verify.subject import Subject
@@ -146,9 +148,8 @@ class Oracle:
         place = bisect_left(self._raised, deadline)
         if place < len(self._runs) and self._raised[place] == deadline:
             return self._runs[place].entered
-        # Nobody served it. The instruction in progress still ends before an interrupt, and if
-        # that one masks the interrupts, the call that it belongs to comes first.
-        return deadline + self._scene.plan.board.mcu.response_cycles
+        # Nobody served it. A call that masks the interrupts before it could be served comes first.
+        return self._scene.trace.served_from(deadline)
 
     def _advance(self, cycle: int) -> None:
         self._edges.extend(self._model.advance(cycle))
@@ -207,15 +208,17 @@ def _rows_of_call(answer: Answer, trace: Trace) -> Iterator[_Row]:
 
 
 def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:
+    """
+    Return what the model is told of the call of *answer*; nothing of one that only reads.
+    """
     call = answer.call
-    match call.kind:
-        case CallKind.SET_SPEED:
-            return SetSpeed(cycle, call.control, call.top, call.limit)
-        case CallKind.HOLD:
-            return Hold(cycle)
-        case CallKind.RELEASE:
-            return Release(cycle)
-        case CallKind.INIT:
-            return Init(cycle)
-        case CallKind.READ:
-            return None
+    update = (call.modification, call.interval, call.count)
+    stimuli: dict[CallKind, Stimulus] = {
+        CallKind.SET_SPEED: SetSpeed(cycle, call.control, call.top, call.limit, *update),
+        CallKind.HOLD: Hold(cycle),
+        CallKind.RELEASE: Release(cycle),
+        CallKind.INIT: Init(cycle),
+        CallKind.UPDATE_CHECK: UpdateCheck(cycle),
+        CallKind.CALLBACKS: Callbacks(cycle, bool(call.control & 1), bool(call.control & 2)),
+    }
+    return stimuli.get(call.kind)

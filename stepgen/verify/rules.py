@@ -19,6 +19,9 @@ from stepgen.verify.trace import Run
 
 # The step interrupt sets the timer with a constant that was measured; compilers differ a little.
 _CALIBRATION_CYCLES = 8
+# Status, then position; one callback, then the other.
+_MASKED_SECTIONS = {CallKind.READ: 2, CallKind.CALLBACKS: 2}
+_NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS}
 
 
 def broken_rules(
@@ -30,7 +33,7 @@ def broken_rules(
     answers = [answer for answer in scene.answers if answer.call.motor == index]
     yield from _unmasked_calls(scene, answers)
     steps = [edge for edge in edges if edge.kind is EdgeKind.STEP]
-    calls = [answer for answer in answers if answer.call.kind != CallKind.READ]
+    calls = [answer for answer in answers if answer.call.kind not in _NO_CODE]
     yield from _wrong_changes(runs, calls, steps)
     yield from _wrong_starts(subject, scene, calls, steps)
     yield from _late_edges(scene.plan.motors[index], runs, calls, steps)
@@ -41,7 +44,7 @@ def _unmasked_calls(scene: Scene, answers: Sequence[Answer]) -> Iterator[str]:
     Whatever is shared with the interrupt is read and written with interrupts off.
     """
     for answer in answers:
-        sections = 2 if answer.call.kind == CallKind.READ else 1  # status, then position
+        sections = _MASKED_SECTIONS.get(answer.call.kind, 1)
         if scene.trace.commit(answer.begin_cycle, answer.end_cycle, sections - 1) is None:
             yield f"{answer.call} touches what the interrupt changes without masking it"
 
@@ -119,7 +122,9 @@ def _late_edges(
         if run is None or not run.writes:
             continue
         call = calls[step.call_index].call
-        thinks = call.control & Control.ENDPOINT_MILLIS and call.limit
+        thinks = motor.motion.watches_clock or (
+            call.control & Control.ENDPOINT_MILLIS and call.limit
+        )
         latest = motor.isr_bound_cycles if thinks else path.boundary_edge_cycles + WAKE_CYCLES
         taken = run.writes[-1].cycle - run.entered
         if taken > latest:

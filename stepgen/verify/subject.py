@@ -10,11 +10,14 @@ from typing import Any, Literal
 
 from stepgen.devices import Board, PortBit
 from stepgen.plan.model import Plan
+from stepgen.reference.contract import MotionKind
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.sequences import coils_off, phases
 from stepgen.spec import LoadedSpec, Motor
 
-_SHIELD_WIRES = ("D3", "D11", "D12", "D13")  # PWM A, PWM B, DIR A, DIR B
+# PWM A and B, then DIR A and B: of the shield, and of one stacked upon another.
+_SHIELD_ENABLES = ("D3", "D11")
+_SHIELD_DIRECTIONS = {False: ("D12", "D13"), True: ("D9", "D8")}
 
 
 @dataclass(frozen=True)
@@ -81,16 +84,23 @@ def subjects(loaded: LoadedSpec, plan: Plan) -> tuple[Subject, ...]:
 def _facts(motor: Motor, plan: Plan) -> MotorFacts:
     drive: Any = motor.drive
     kind: Literal["four-wire", "motor-shield"] = drive.kind
+    motion_spec: Any = motor.motion
+    motion: MotionKind = motion_spec.kind
     sequence: str | Sequence[str] = getattr(drive.sequence, "patterns", drive.sequence)
     return MotorFacts(
         phases=phases(kind, sequence),
         coils_off=coils_off(kind),
         minimum_cycles=plan.minimum_period_cycles,
         at_rest=motor.at_rest,
+        motion=motion,
     )
 
 
 def _wires(drive: Any, board: Board) -> tuple[PortBit, ...]:  # noqa: ANN401 - any kind of drive
-    names = _SHIELD_WIRES if drive.kind == "motor-shield" else drive.pins
+    names = drive.pins if drive.kind == "four-wire" else _shield_names(drive)
     pins = [board.find_pin(name) for name in names]
     return tuple(pin.bit for pin in pins if pin)
+
+
+def _shield_names(drive: Any) -> tuple[str, ...]:  # noqa: ANN401 - a motor shield
+    return (*(drive.enables or _SHIELD_ENABLES), *_SHIELD_DIRECTIONS[drive.stacked])

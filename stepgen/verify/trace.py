@@ -75,6 +75,9 @@ class Trace:
             for row in rows
             if int(row["source"]) in letters
         ]
+        exits = self._of(Kind.ISR_EXIT)
+        self._isr_exits = exits["cycle"].tolist()
+        self._isr_entries = exits["since"].tolist()
         self._port_cycles = [state.cycle for state in self.ports]
         self.masked = [int(row["cycle"]) for row in self._of(Kind.MASKED)]
         self.unmasked = [int(row["cycle"]) for row in self._of(Kind.UNMASKED)]
@@ -176,3 +179,17 @@ class Trace:
             return None
         section = self.commit(self.masked[place], cycle)
         return section if section and section[1] >= cycle else None
+
+    def served_from(self, cycle: int) -> int:
+        """
+        Return from when on an interrupt raised at *cycle* can be taken, as far as others let it.
+
+        After each RETI the main program gets one instruction before the next interrupt.
+        """
+        instruction = self.mcu.response_cycles  # the longest, CALL and RET, take as long
+        free = cycle
+        place = bisect_left(self._isr_exits, cycle)
+        while place < len(self._isr_exits) and self._isr_entries[place] <= free:
+            free = self._isr_exits[place] + instruction
+            place += 1
+        return max(free, cycle + instruction)

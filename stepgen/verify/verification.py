@@ -14,6 +14,7 @@ from stepgen.verify.report import MotorFigures, SpecReport
 from stepgen.verify.runner import Outcome, is_asleep, run_scenario
 from stepgen.verify.scenarios import Scenario, standard_scenarios
 from stepgen.verify.toolchain import Compiler
+from stepgen.verify.update_scenarios import update_scenarios
 
 Track = Callable[[Sequence[Scenario]], Iterable[Scenario]]
 
@@ -54,7 +55,8 @@ def verify_spec(
         )
         for motor in plan.motors
     }
-    for scenario in track(standard_scenarios(plan)):
+    scenarios = (*standard_scenarios(plan), *update_scenarios(plan))
+    for scenario in track(scenarios):
         _judge(run_scenario(loaded, plan, firmware.bench, scenario), plan, report)
     findings = run_example(loaded, plan, firmware.example)
     report.check("the example sketch", findings, "every step as the model says")

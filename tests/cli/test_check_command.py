@@ -15,11 +15,31 @@ SpecOf = Callable[..., Path]
 
 def test_a_good_spec_is_fine(stepgen: Stepgen, pan: Path) -> None:
     """
-    A valid spec gives one line on stdout and exit code 0.
+    A valid spec gives one line on stdout and exit code 0; warnings, on stderr, change nothing.
     """
     run = stepgen("check", pan.name)
 
-    assert (run.code, run.out, run.err) == (0, "Pan.yaml: fine\n", "")
+    assert (run.code, run.out) == (0, "Pan.yaml: fine\n")
+    warnings = run.err.splitlines()
+    assert warnings[0].startswith("Pan.yaml: warning: motor motor: Servo needs timer 1")
+    assert all(line.startswith("Pan.yaml: warning: motor motor: ") for line in warnings)
+
+
+def test_a_spec_that_takes_nothing_from_others_has_no_warning(
+    stepgen: Stepgen, tmp_path: Path
+) -> None:
+    """
+    With what the sketch uses named, and a timer and pins that nobody needs, stderr is empty.
+    """
+    (tmp_path / "a.yaml").write_text(
+        "library: A\nboard: mega\nuses: [Servo D22, analogWrite D11]\nmotors:\n"
+        "  m: {drive: {kind: four-wire, pins: [A8, A9, A10, A11]}, timer: 4}\n",
+        encoding="utf-8",
+    )
+
+    run = stepgen("check", "a.yaml")
+
+    assert (run.code, run.out, run.err) == (0, "a.yaml: fine\n", "")
 
 
 def test_faults_are_shown_in_their_line(stepgen: Stepgen, spec_of: SpecOf) -> None:

@@ -7,14 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from stepgen.devices import Board
 from stepgen.errors import Fault, StepgenError
+from stepgen.plan.claims import Claim, report_conflicts
+from stepgen.plan.faults import Faults
 from stepgen.plan.model import Plan
-from stepgen.plan.planner import free_timers, make_plan
+from stepgen.plan.planner import make_plan
 from stepgen.spec import load_spec
 
 Planner = Callable[[str], Plan]
 Faulty = Callable[[str], tuple[Fault, ...]]
+
+_FREE_UNO = "{drive: {kind: four-wire, pins: [D4, D5, D6, D7]}}"
 
 
 @pytest.fixture
@@ -43,6 +46,16 @@ def faults(planned: Planner) -> Faulty:
         return error.value.faults
 
     return plan
+
+
+@pytest.fixture
+def spec_faults(tmp_path: Path) -> Faults:
+    """
+    Return an empty list of faults of a spec.
+    """
+    path = tmp_path / "spec.yaml"
+    path.write_text(f"library: M\nboard: uno\nmotors:\n  m: {_FREE_UNO}\n", encoding="utf-8")
+    return Faults(load_spec(path))
 
 
 def _lines(found: tuple[Fault, ...]) -> list[str]:
@@ -111,7 +124,8 @@ def test_two_motors_cannot_share_a_pin(faults: Faulty) -> None:
     (line,) = _lines(found)
     assert line == (
         ":5:17 pin D12 (PB6) is taken by motor pan, as coil D and wanted by motor tilt, as DIR A; "
-        "give one of them other pins"
+        "move the other one, since a shield's pins are fixed (a second shield goes on top with "
+        "`stacked: true`)"
     )
 
 
@@ -130,39 +144,6 @@ def test_two_motors_cannot_share_a_timer(faults: Faulty) -> None:
     ]
 
 
-def test_servo_takes_the_only_timer_of_the_uno(faults: Faulty) -> None:
-    """
-    Known weakness 1 of system 1: nothing warned the user. Now something does, with a way out.
-    """
-    named = faults("board: uno\nuses: [Servo]\nmotors:\n  motor: {drive: motor-shield, timer: 1}\n")
-    any_timer = faults("board: uno\nuses: [Servo]\nmotors:\n  motor: {drive: motor-shield}\n")
-
-    (line,) = _lines(named)
-    assert line == (
-        ":5:39 timer 1 is taken by Servo and wanted by motor motor; "
-        "no other 16-bit timer is left on this board"
-    )
-    assert any_timer[0].reason.endswith(
-        "remove a motor or a library from `uses`, or take a larger board"
-    )
-
-
-def test_servo_leaves_three_timers_of_the_mega(mega: Board) -> None:
-    """
-    Up to 12 servos take timer 5 only.
-    """
-    assert free_timers(mega, ("Servo",), ()) == (1, 3, 4)
-
-
-def test_a_motor_beside_servo_on_the_mega_gets_a_free_timer(planned: Planner) -> None:
-    """
-    Without a timer in the spec, the first one that nobody wants is taken.
-    """
-    plan = planned("board: mega\nuses: [Servo]\nmotors:\n  motor: {drive: motor-shield}\n")
-
-    assert plan.motors[0].timing.timer.number == 1
-
-
 def test_timers_that_are_named_are_given_away_first(planned: Planner) -> None:
     """
     A motor that takes any timer does not take the one that a later motor names.
@@ -176,42 +157,6 @@ def test_timers_that_are_named_are_given_away_first(planned: Planner) -> None:
     assert [motor.timing.timer.number for motor in plan.motors] == [3, 1]
 
 
-@pytest.mark.parametrize(("pin", "label"), [("D0", "D0 (PD0)"), ("D1", "D1 (PD1)")])
-def test_serial_needs_its_pins(faults: Faulty, pin: str, label: str) -> None:
-    """
-    A coil on RX or TX is refused when the sketch uses Serial.
-    """
-    (fault,) = faults(
-        "board: uno\nuses: [Serial]\nmotors:\n"
-        f"  motor: {{drive: {{kind: four-wire, pins: [{pin}, D4, D5, D6]}}}}\n"
-    )
-
-    assert fault.reason.startswith(f"pin {label} is taken by Serial and wanted by motor motor")
-    assert fault.reason.endswith("; give one of them other pins")
-
-
-def test_without_serial_its_pins_are_free(planned: Planner) -> None:
-    """
-    What the sketch does not use takes nothing.
-    """
-    plan = planned(
-        "board: uno\nmotors:\n  motor: {drive: {kind: four-wire, pins: [D0, D1, D5, D6]}}\n"
-    )
-
-    assert [wire.pin.label for wire in plan.motors[0].drive.wires] == ["D0", "D1", "D5", "D6"]
-
-
-def test_an_unknown_library_is_refused_with_the_known_ones(faults: Faulty) -> None:
-    """
-    What stepgen does not know it cannot check; it says what it knows on this board.
-    """
-    (fault,) = faults("board: uno\nuses: [Serial1]\nmotors:\n  motor: {drive: motor-shield}\n")
-
-    assert fault.text == "Serial1"
-    assert fault.reason.startswith("stepgen does not know what Serial1 takes on the Arduino Uno")
-    assert "Servo" in fault.reason
-
-
 def test_all_conflicts_are_reported_together(faults: Faulty) -> None:
     """
     Pins, timers and libraries come in one report, in the order of the lines.
@@ -223,3 +168,26 @@ def test_all_conflicts_are_reported_together(faults: Faulty) -> None:
     )
 
     assert [fault.text for fault in found] == ["Nothing", "A9", "2"]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "conflicts"),
+    [
+        ("", "", ["vector PCINT0_vect is taken by pan and wanted by tilt; move"]),
+        ("step", "step", []),
+        ("step", "", ["vector PCINT0_vect is taken by pan and wanted by tilt; move"]),
+    ],
+)
+def test_claims_conflict_unless_they_share(
+    spec_faults: Faults, one: str, other: str, conflicts: list[str]
+) -> None:
+    """
+    Two claims of one resource stand beside each other only if both say that they share it.
+    """
+    resource = "vector PCINT0_vect"
+    first = Claim(resource, "pan", spec_faults, "move", sharing=one)
+    second = Claim(resource, "tilt", spec_faults, "move", sharing=other)
+
+    report_conflicts([first, second])
+
+    assert [fault.reason for fault in spec_faults.found] == conflicts

@@ -198,6 +198,25 @@ def test_a_ring_of_the_shield_only_switches_off_on_the_way(board: str, sequence:
         _check_ring(_motor(board, drive="motor-shield", sequence=sequence), background)
 
 
+@given(
+    enables=st.lists(
+        st.sampled_from([pin for pin in _pin_labels("uno") if pin not in ("D8", "D9")]),
+        min_size=2,
+        max_size=2,
+        unique=True,
+    ),
+    sequence=st.sampled_from(["half", "wave"]),
+)
+def test_a_ring_of_a_stacked_shield_turns_coils_that_are_off(
+    enables: list[str], sequence: str
+) -> None:
+    """
+    Wherever its enables are, the DIR wires D9 and D8 change while their coil is switched off.
+    """
+    drive = {"kind": "motor-shield", "stacked": True, "enables": enables, "sequence": sequence}
+    _check_ring(_motor("uno", drive=drive), 0x5A)
+
+
 def test_a_ring_lies_in_one_page_of_flash() -> None:
     """
     Its alignment is the power of two that holds it: 16 rows of 2 bytes need 32.

@@ -54,9 +54,7 @@ static Setting chooseSetting(uint32_t period, uint8_t elapsed) {
 }
 
 // Returns why a call of a speed function must be refused, or 0.
-static int8_t checkSpeed(uint8_t control, uint32_t period) {
-  constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
-  if (control & ~kKnown) return MOTOR_ERROR_CONTROL;
+static int8_t checkSpeed(uint32_t period) {
   if (period < MOTOR_MIN_TOP) return MOTOR_ERROR_TOO_FAST;
   if (period > MOTOR_MAX_TOP) return MOTOR_ERROR_TOO_SLOW;
   return 0;
@@ -264,7 +262,8 @@ int8_t motorSetSpeed(
     }
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
-  const int8_t error = checkSpeed(control, timerTop32virtual);
+  constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
+  const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
   if (error) {
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
       motorStatus |= error == MOTOR_ERROR_CONTROL

@@ -34,7 +34,7 @@ constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the st
 constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // a call was refused; a start clears it
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;  // because no timer setting has that speed
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;          // at the end point, or stopped
-constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;       // running at a fixed speed
+constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;       // running at a speed that stays
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed, above 0 a warning.
 constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // below MOTOR_MIN_TOP

@@ -2,6 +2,7 @@
 What the planner knows of each drive: one module per kind, named like it.
 """
 
+from collections.abc import Sequence
 from importlib import import_module
 
 from stepgen.devices import Board
@@ -10,10 +11,14 @@ from stepgen.plan.faults import Faults
 from stepgen.spec.base import KindModel
 
 
-def plan_drive(spec: KindModel, board: Board, faults: Faults) -> CoilDrive | None:
+def plan_drive(
+    spec: KindModel, beside: Sequence[KindModel], board: Board, faults: Faults
+) -> CoilDrive | None:
     """
     Return the drive that *spec* asks for on *board*, or None after reporting why it cannot be.
+
+    *beside* are the drives of the other motors: a stacked shield changes the one below it.
     """
     module = import_module(f"{__name__}.{spec.kind.replace('-', '_')}")
-    drive: CoilDrive | None = module.plan(spec, board, faults)
+    drive: CoilDrive | None = module.plan(spec, beside, board, faults)
     return drive

@@ -2,9 +2,12 @@
 Four wires, one for each coil, in the order in which the coils follow each other.
 """
 
+from collections.abc import Sequence
+
 from stepgen.devices import Board
 from stepgen.plan.coils import CoilDrive, Pattern, Wire
 from stepgen.plan.faults import Faults
+from stepgen.spec.base import KindModel
 from stepgen.spec.drives.four_wire import FourWire
 from stepgen.spec.sequence import PatternTable
 
@@ -15,7 +18,9 @@ _NAMED = {
 }
 
 
-def plan(spec: FourWire, board: Board, faults: Faults) -> CoilDrive | None:
+def plan(
+    spec: FourWire, _beside: Sequence[KindModel], board: Board, faults: Faults
+) -> CoilDrive | None:
     """
     Return the four wires and their phases, or None when a pin is not on *board*.
     """

@@ -1,0 +1,129 @@
+"""
+The view of the public names: which control bits, status bits, codes and functions there are.
+
+What no motor of the library can do has no name in it.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from stepgen.plan.model import Plan
+
+_CHANGING = frozenset({"update-events"})
+_ALL = frozenset({"constant", "update-events"})
+
+
+@dataclass(frozen=True)
+class _Name:
+    name: str
+    value: int
+    remark: str
+    motions: frozenset[str] = _ALL
+
+
+@dataclass(frozen=True)
+class Definition:
+    """
+    A constant of the header as finished text, and its comment, lined up with its neighbours'.
+    """
+
+    value: str
+    comment: str
+
+
+_CONTROL_BITS = (
+    _Name("MOTOR_CTRL_DRV_EN", 0x80, "drive the motor; without it it lets go"),
+    _Name("MOTOR_CTRL_SPEED_VARIABLE", 0x40, "update events change the speed", _CHANGING),
+    _Name("MOTOR_CTRL_VARIABLE_PWR", 0x20, "each halves (FASTER) or doubles the next", _CHANGING),
+    _Name("MOTOR_CTRL_IRQ_TIMING", 0x10, "the step interrupt applies them", _CHANGING),
+    _Name("MOTOR_CTRL_UPDATE_STEPS", 0x08, "timerUpd_ms counts steps", _CHANGING),
+    _Name("MOTOR_CTRL_ENDPOINT_MILLIS", 0x04, "limit is in milliseconds, not in steps"),
+    _Name("MOTOR_CTRL_FASTER", 0x02, "events shorten the interval", _CHANGING),
+    _Name("MOTOR_CTRL_SLOWER", 0x00, "they lengthen it: for readers", _CHANGING),
+    _Name("MOTOR_CTRL_DIRECTION", 0x01, "backward through the step sequence"),
+)
+_STATUS_BITS = (
+    _Name("MOTOR_STAT_FAULT", 0x01, "a call was refused; a start clears it"),
+    _Name("MOTOR_STAT_FAULT_CALLED", 0x02, "and its callback was told", _CHANGING),
+    _Name("MOTOR_STAT_TIMER_DIV_ERROR", 0x04, "because no timer setting has that speed"),
+    _Name("MOTOR_STAT_TIMER_DIV_CALLED", 0x08, "and the callback was told", _CHANGING),
+    _Name("MOTOR_STAT_REACHED", 0x10, "at the end point, or stopped"),
+    _Name("MOTOR_STAT_REACH_CALLED", 0x20, "and its callback was told", _CHANGING),
+    _Name("MOTOR_STAT_SPIN_FIXED", 0x40, "running at a speed that stays"),
+)
+_CODES = (
+    _Name("MOTOR_ERROR_TOO_FAST", -1, "below MOTOR_MIN_TOP"),
+    _Name("MOTOR_ERROR_TOO_SLOW", -2, "above MOTOR_MAX_TOP"),
+    _Name(
+        "MOTOR_ERROR_CONTROL",
+        -3,
+        "a control bit that this library does not have",
+        frozenset({"constant"}),
+    ),
+    _Name("MOTOR_ERROR_UPDATE", -4, "modification, interval or count of events is 0", _CHANGING),
+    _Name("MOTOR_ERROR_RUNNING", -5, "not while the motor runs"),
+    _Name("MOTOR_WARN_NOT_ENABLED", 1, "a speed without MOTOR_CTRL_DRV_EN: the motor stops"),
+)
+_FUNCTIONS = ("ShieldInit", "SetSpeed", "ReadStatus", "ReadPosition", "Hold", "Release")
+_CHANGING_FUNCTIONS = ("TimerUpdateCheck", "CallBackPositionReached", "CallBackFault")
+_RANGE = ("MOTOR_MIN_TOP", "MOTOR_MAX_TOP")
+
+
+def control_bits(plan: Plan) -> tuple[Definition, ...]:
+    """
+    Return the control bits that some motor of *plan* knows.
+    """
+    return _definitions("uint8_t", _used(_CONTROL_BITS, plan))
+
+
+def status_bits(plan: Plan) -> tuple[Definition, ...]:
+    """
+    Return the status bits that some motor of *plan* can show.
+    """
+    return _definitions("uint8_t", _used(_STATUS_BITS, plan))
+
+
+def codes(plan: Plan) -> tuple[Definition, ...]:
+    """
+    Return what the functions of *plan* return beside 0.
+    """
+    return _definitions("int8_t", _used(_CODES, plan))
+
+
+def function_names(plan: Plan) -> tuple[str, ...]:
+    """
+    Return all functions, those of the library first.
+    """
+    names = ["motorTimerGetIOclocksPerSecond", "motorTimerCalcPerSecond"]
+    for motor in plan.motors:
+        parts: tuple[str, ...] = _FUNCTIONS
+        parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
+        parts += ("StepsForTurns",) if motor.steps_per_turn is not None else ()
+        names += [f"{motor.name}{part}" for part in parts]
+    return tuple(names)
+
+
+def constant_names(plan: Plan) -> tuple[str, ...]:
+    """
+    Return all constants of the header.
+    """
+    used = _used((*_CONTROL_BITS, *_STATUS_BITS, *_CODES), plan)
+    return (*(name.name for name in used), *_RANGE)
+
+
+def _used(names: Iterable[_Name], plan: Plan) -> tuple[_Name, ...]:
+    kinds = {motor.motion.kind for motor in plan.motors}
+    return tuple(name for name in names if name.motions & kinds)
+
+
+def _definitions(kind: str, names: tuple[_Name, ...]) -> tuple[Definition, ...]:
+    texts = [f"constexpr {kind} {name.name} = {_value(kind, name.value)};" for name in names]
+    width = max(len(text) for text in texts)
+    return tuple(
+        Definition(text, f"{' ' * (width - len(text))}  // {name.remark}")
+        for text, name in zip(texts, names, strict=True)
+    )
+
+
+def _value(kind: str, value: int) -> str:
+    return f"0x{value:02X}" if kind == "uint8_t" else str(value)

@@ -1,0 +1,135 @@
+"""
+Warnings: what a finished plan keeps from the sketch that the spec says nothing about.
+
+A library that the spec names in ``uses`` is a claim, and a conflict with it an error. One that
+it does not name may be used all the same, so what it would miss is said here.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from stepgen.devices import SKETCH_LIBRARIES, LibraryClaims, Pin, library_claims
+from stepgen.plan.model import MotorPlan, Plan
+from stepgen.plan.uses import ANALOG_WRITE, read_uses
+
+# What else fails beside the library itself where its pins are taken.
+_ALSO = {"Serial": ", and uploading may be disturbed"}
+
+
+@dataclass(frozen=True)
+class PlanWarning:
+    """
+    Something of a plan that may surprise, with the name of the motor that it comes from.
+    """
+
+    motor: str
+    reason: str
+
+    def __str__(self) -> str:
+        """
+        Return the warning as one line, beginning with the motor.
+        """
+        return f"motor {self.motor}: {self.reason}"
+
+
+def plan_warnings(plan: Plan) -> tuple[PlanWarning, ...]:
+    """
+    Return what the motors of *plan* keep from libraries and functions that it does not name.
+
+    In the order of the motors; of each motor first its timer, then its pins.
+    """
+    return tuple(
+        PlanWarning(motor.name, reason)
+        for motor in plan.motors
+        for reason in (
+            *_timer_reasons(motor, plan),
+            *_pwm_reasons(motor, plan),
+            *_pin_reasons(motor, plan),
+        )
+    )
+
+
+def _named(plan: Plan) -> set[str]:
+    return {text.split()[0] for text in plan.uses}
+
+
+def _libraries(plan: Plan) -> Iterable[LibraryClaims]:
+    found = (library_claims(name, plan.board) for name in SKETCH_LIBRARIES)
+    return (claims for claims in found if claims)
+
+
+def _timer_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
+    """
+    Yield the libraries that need the timer of *motor*, at once or with many objects.
+    """
+    number = motor.timing.timer.number
+    for library in _libraries(plan):
+        if number not in library.timers:
+            continue
+        objects = library.timers.index(number) * (library.objects_per_timer or 0)
+        if objects and library.name in plan.uses:
+            yield (
+                f"{library.name} takes timer {number}, too, if more than {objects} are attached; "
+                f"name their pins (`{library.name} D22 D23 ...`), or attach {objects} at most"
+            )
+        elif library.name not in _named(plan):
+            beyond = f" if more than {objects} are attached" if objects else ""
+            yield (
+                f"{library.name} needs timer {number}{beyond} and will not work beside it; "
+                f"{_way_out(library, plan)}"
+            )
+
+
+def _way_out(library: LibraryClaims, plan: Plan) -> str:
+    """
+    Return the timers that neither the plan nor *library* with few objects needs.
+    """
+    busy = {motor.timing.timer.number for motor in plan.motors} | {library.timers[0]}
+    for use in read_uses(plan.uses, plan.board, lambda _index, _reason: None).values():
+        busy.update(use.timers)
+    free = [str(t.number) for t in plan.board.mcu.timers16 if t.number not in busy]
+    if not free:
+        return "no other 16-bit timer is left on this board"
+    return f"if the sketch uses it, take timer {' or '.join(free)}"
+
+
+def _pwm_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
+    """
+    Yield the PWM pins of the motor's timer, as far as no motor has them.
+    """
+    if ANALOG_WRITE in _named(plan):
+        return
+    timer = motor.timing.timer
+    taken = {wire.pin.bit for each in plan.motors for wire in each.drive.every_wire}
+    free = {channel: bit for channel, bit in timer.outputs if bit not in taken}
+    pins = [pin for pin in plan.board.pins if pin.bit in free.values()]
+    if pins:
+        top = f"it rewrites OCR{timer.number}A, and the motor would run away"
+        yield (
+            f"no {ANALOG_WRITE}() on {_listed(pins, 'or')}, PWM of timer {timer.number}: "
+            f"{top if 'A' in free else 'it would follow the steps'}; take other pins for it"
+        )
+
+
+def _pin_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
+    """
+    Yield the libraries whose pins *motor* takes, and the board's LED.
+
+    None of them is named: with a library in `uses` a shared pin is an error.
+    """
+    pins = [wire.pin for wire in motor.drive.every_wire]
+    for library in _libraries(plan):
+        shared = [pin for pin in pins if pin.bit in library.pins]
+        if shared:
+            yield (
+                f"{library.name} needs {_listed(shared, 'and')} and will not work beside it"
+                f"{_ALSO.get(library.name, '')}; if the sketch uses it, give the motor other pins"
+            )
+    for pin in pins:
+        if "LED" in pin.uses:
+            yield f"{pin.label} is the board's LED; the sketch must leave LED_BUILTIN alone"
+
+
+def _listed(pins: list[Pin], word: str) -> str:
+    labels = [pin.label for pin in sorted(pins, key=lambda pin: pin.number)]
+    return f"{', '.join(labels[:-1])} {word} {labels[-1]}" if labels[1:] else labels[0]

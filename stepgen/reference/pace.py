@@ -1,0 +1,65 @@
+"""
+When the step interrupt comes: the deadlines of the timer, and when each is served.
+"""
+
+from dataclasses import dataclass
+
+from stepgen.reference.facts import ServiceCycle
+from stepgen.reference.stimuli import ClockOn
+from stepgen.reference.timer import TimerSetting, first_overflow_cycle
+
+
+@dataclass
+class Pace:
+    """
+    The interval in progress and the deadline that ends it.
+
+    Args:
+        service_cycle: A pure function from a deadline to the cycle of its service.
+        interval: Prescaler and period of the interval in progress, None at rest.
+        deadline_cycle: When the timer sets TOV next, None until its clock is on.
+    """
+
+    service_cycle: ServiceCycle
+    interval: TimerSetting | None = None
+    deadline_cycle: int | None = None
+
+    def begin(self, interval: TimerSetting) -> None:
+        """
+        Begin with *interval*; its deadline comes from the clock.
+        """
+        self.interval, self.deadline_cycle = interval, None
+
+    def stop(self) -> None:
+        """
+        Let no deadline come any more.
+        """
+        self.interval = self.deadline_cycle = None
+
+    def go_on(self, deadline: int, interval: TimerSetting) -> None:
+        """
+        Go on from *deadline* with *interval*.
+        """
+        self.interval, self.deadline_cycle = interval, deadline + interval.period_cycles
+
+    def clock_on(self, clock: ClockOn) -> None:
+        """
+        Take the deadline from *clock*, if it has the prescaler of the interval in progress.
+        """
+        if self.interval is not None and clock.prescaler == self.interval.prescaler:
+            self.deadline_cycle = first_overflow_cycle(clock.cycle, clock.tcnt, self.interval)
+
+    def served_by(self, cycle: int) -> int | None:
+        """
+        Return the deadline if its service comes at or before *cycle*, else None.
+
+        Raises:
+            ValueError: The service lies before the deadline.
+        """
+        deadline = self.deadline_cycle
+        if deadline is None or deadline > cycle:
+            return None
+        service = self.service_cycle(deadline)
+        if service < deadline:
+            raise ValueError(f"deadline {deadline} served too early, at {service}")
+        return deadline if service <= cycle else None

@@ -1,0 +1,18 @@
+"""
+Update events: the speed changes by itself, every so many milliseconds or steps (system 1).
+"""
+
+from typing import Literal
+
+from stepgen.spec.base import KindModel
+
+
+class UpdateEvents(KindModel):
+    """
+    Motion ``update-events``: what ``constant`` does, and speeds that change while running.
+    """
+
+    kind: Literal["update-events"] = "update-events"
+
+
+SPEC = UpdateEvents
