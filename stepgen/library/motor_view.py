@@ -69,6 +69,7 @@ class MotorView:
     kernel_name: str
     timing_name: str
     motion_name: str
+    has_updates: bool
     kernel: KernelView
     timer: TimerView
     vector: str
@@ -110,6 +111,7 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
         kernel_name=motor.kernel.kind,
         timing_name=module_name(motor.timing.kind),
         motion_name=module_name(motor.motion.kind),
+        has_updates=motor.motion.watches_clock,
         kernel=kernel_view(motor.kernel),
         timer=_timer_view(motor),
         vector=motor.timing.vector,

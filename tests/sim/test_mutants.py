@@ -50,7 +50,7 @@ MUTANTS = (
     ),
     Mutant(
         "a position that is read without cli",
-        "motions/constant.j2",
+        "macros/motion.j2",
         "ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position",
         "{ position",
     ),
@@ -97,6 +97,27 @@ MUTANTS = (
         "{{ motor.name }}Reached(kThink | kCoast);",
         "{{ motor.name }}Reached(kThink | kCoast); {{ motor.name }}CoilsOff();",
         spec="uno_uln2003_28byj48",
+    ),
+    Mutant(
+        "an update event that is one too many",
+        "motions/update_events.j2",
+        "if (--{{ motor.name }}Updates == 0)",
+        "if ({{ motor.name }}Updates-- == 0)",
+        spec="uno_variable_speed",
+    ),
+    Mutant(
+        "a new TOP that loses a step count when the prescaler changes",
+        "motions/update_events.j2",
+        "{{ motor.name }}Rest += ahead;",
+        "{{ motor.name }}Rest += ahead - 1;",
+        spec="uno_variable_speed",
+    ),
+    Mutant(
+        "a clock that is looked at too late",
+        "motions/update_events.j2",
+        "{{ motor.name }}Wake = now + wait;",
+        "{{ motor.name }}Wake = now + wait + 1;",
+        spec="uno_variable_speed",
     ),
     Mutant(
         "a millisecond limit that is one step late",
