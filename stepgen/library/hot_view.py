@@ -4,7 +4,7 @@ The view of a step interrupt: instructions and operands as finished assembler te
 
 from dataclasses import dataclass
 
-from stepgen.plan.isr import Instruction, Place
+from stepgen.plan.instructions import Instruction, Place
 from stepgen.plan.kernels import Ring
 from stepgen.plan.model import MotorPlan
 

@@ -8,65 +8,13 @@ its length is known before anything is compiled.
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from stepgen.devices import Mcu, Port, Register
-from stepgen.plan.kernels import Kernel, PortWrite, Ring, Toggle
+from stepgen.devices import Mcu
+from stepgen.plan.instructions import Instruction, Storage
+from stepgen.plan.kernels import Kernel
+from stepgen.plan.step_code import saved_registers, step_code
 
 _CLOCK_TAKEN_CYCLES = 1  # SBRC that does not skip and RJMP, against SBRC that does
 _VECTOR_JUMP_CYCLES = 3  # the JMP in the vector table
-
-
-@dataclass(frozen=True)
-class Instruction:
-    """
-    One line of the hot path: its text with named operands, its cycles and why it is there.
-
-    *label* stands before it. *cycles* are those of the usual way: a branch not taken.
-    """
-
-    text: str
-    cycles: int
-    note: str = ""
-    label: str = ""
-
-
-@dataclass(frozen=True)
-class Place:
-    """
-    Where a byte of a motor's state lives: in a GPIOR, or in RAM under a variable's name.
-    """
-
-    name: str
-    register: Register | None = None
-
-    def load(self, into: str, operand: str, note: str = "") -> Instruction:
-        """
-        Return the instruction that reads the byte.
-        """
-        text = f"in    {into}, %[{operand}]" if self.register else f"lds   {into}, %[{operand}]"
-        return Instruction(text, 1 if self.register else 2, note)
-
-    def store(self, source: str, operand: str, note: str = "") -> Instruction:
-        """
-        Return the instruction that writes the byte.
-        """
-        text = f"out   %[{operand}], {source}" if self.register else f"sts   %[{operand}], {source}"
-        return Instruction(text, 1 if self.register else 2, note)
-
-
-@dataclass(frozen=True)
-class Storage:
-    """
-    Where a motor keeps what its step interrupt needs.
-
-    Args:
-        count: Step interrupts until the next boundary, 1 to 255.
-        state: The kernel's byte: the bits to toggle next, or the row of the present phase.
-        scratch: SREG while a step interrupt runs; all motors share it, since none nests.
-    """
-
-    count: Place
-    state: Place
-    scratch: Place
 
 
 @dataclass(frozen=True)
@@ -119,19 +67,6 @@ class HotPath:
     think_entry_cycles: int
 
 
-def allocate(mcu: Mcu, names: Iterable[str]) -> tuple[Storage, ...]:
-    """
-    Return the storage of each motor: the first one gets the GPIORs, which save it four cycles.
-    """
-    state, count, scratch = (Place(register.name, register) for register in mcu.gpiors)
-    return tuple(
-        Storage(count, state, scratch)
-        if index == 0
-        else Storage(Place(f"{name}Count"), Place(f"{name}State"), scratch)
-        for index, name in enumerate(names)
-    )
-
-
 def compose(
     kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, *, watches_clock: bool = False
 ) -> HotPath:
@@ -141,7 +76,7 @@ def compose(
     With *watches_clock* each step first looks whether the clock has come to the motor's next
     moment; the handler then goes before the step, and the count has not been touched.
     """
-    saved = _saved(kernel)
+    saved = saved_registers(kernel)
     entry = (
         Instruction("push  r24", 2),
         Instruction("in    r24, %[sreg]", 1),
@@ -155,7 +90,7 @@ def compose(
     )
     step = (
         *(Instruction(f"push  {register}", 2) for register in saved),
-        *_step(kernel, storage),
+        *step_code(kernel, storage),
         *(Instruction(f"pop   {register}", 2) for register in reversed(saved)),
     )
     leave = (
@@ -235,91 +170,3 @@ def _cycles_to_edge(step: tuple[Instruction, ...]) -> int:
 
 def _writes(line: Instruction) -> bool:
     return line.text.startswith(("out", "sts"))
-
-
-def _saved(kernel: Kernel) -> tuple[str, ...]:
-    if isinstance(kernel, Toggle):
-        return ()
-    return ("r30", "r31") if len(kernel.writes) == 1 else ("r25", "r30", "r31")
-
-
-def _step(kernel: Kernel, storage: Storage) -> tuple[Instruction, ...]:
-    if isinstance(kernel, Toggle):
-        return _toggle_step(kernel, storage)
-    return _ring_step(kernel, storage)
-
-
-def _toggle_step(kernel: Toggle, storage: Storage) -> tuple[Instruction, ...]:
-    write = _access(kernel.port.pin)
-    return (
-        storage.state.load("r24", "state", "whose turn it is"),
-        Instruction(f"{write.store}%[port0], r24", write.cycles, "ones written to PINx toggle"),
-        Instruction("com   r24", 1),
-        Instruction(f"andi  r24, {kernel.both:#04x}", 1),
-        storage.state.store("r24", "state", "next time it is the other's"),
-    )
-
-
-def _ring_step(kernel: Ring, storage: Storage) -> tuple[Instruction, ...]:
-    follow = (
-        storage.state.load("r30", "state", "the row of the present phase"),
-        Instruction("subi  r30, lo8(-(%[ring]))", 1, "no carry: the ring lies in one page"),
-        Instruction("ldi   r31, hi8(%[ring])", 1),
-        Instruction("lpm   r30, Z", 3, "the row of the next phase"),
-        storage.state.store("r30", "state"),
-        Instruction("subi  r30, lo8(-(%[ring] + 1))", 1),
-    )
-    if len(kernel.writes) == 1:
-        return (*follow, *_single_write(kernel))
-    lines = list(follow)
-    for write in kernel.writes:
-        access = _access(write.port.port)
-        operand = f"%[port{_port_index(kernel, write.port)}]"
-        lines.append(Instruction(f"lpm   r24, Z{'+' if write != kernel.writes[-1] else ''}", 3))
-        lines.append(Instruction(f"{access.load}r25, {operand}", access.cycles))
-        lines.extend(_combine(write))
-        note = f"{write.port.letter}: {_WRITE_NOTES[write.operation]}"
-        lines.append(Instruction(f"{access.store}{operand}, r25", access.cycles, note))
-    return tuple(lines)
-
-
-def _single_write(kernel: Ring) -> tuple[Instruction, ...]:
-    write = kernel.writes[0]
-    access = _access(write.port.port)
-    return (
-        Instruction("lpm   r24, Z", 3, "its pattern"),
-        Instruction(f"{access.load}r30, %[port0]", access.cycles),
-        Instruction(f"andi  r30, {~write.mask & 0xFF:#04x}", 1, "the port's other bits stay"),
-        Instruction("or    r24, r30", 1),
-        Instruction(f"{access.store}%[port0], r24", access.cycles),
-    )
-
-
-def _port_index(kernel: Ring, port: Port) -> int:
-    return [share.port for share in kernel.ports].index(port)
-
-
-def _combine(write: PortWrite) -> tuple[Instruction, ...]:
-    keep = Instruction(f"andi  r25, {~write.mask & 0xFF:#04x}", 1)
-    clear, add = Instruction("and   r25, r24", 1), Instruction("or    r25, r24", 1)
-    return {"clear": (clear,), "set": (add,), "merge": (keep, add)}[write.operation]
-
-
-_WRITE_NOTES = {
-    "clear": "coils that end go off",
-    "merge": "off and on at once",
-    "set": "coils that begin go on",
-}
-
-
-@dataclass(frozen=True)
-class _Access:
-    load: str
-    store: str
-    cycles: int
-
-
-def _access(register: Register) -> _Access:
-    if register.in_io:
-        return _Access("in    ", "out   ", 1)
-    return _Access("lds   ", "sts   ", 2)

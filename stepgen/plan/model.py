@@ -7,7 +7,8 @@ from fractions import Fraction
 
 from stepgen.devices import Board, Timer16
 from stepgen.plan.coils import CoilDrive
-from stepgen.plan.isr import HotPath, Motion, Storage
+from stepgen.plan.instructions import Storage
+from stepgen.plan.isr import HotPath, Motion
 from stepgen.plan.kernels import Kernel
 from stepgen.spec import Library
 

@@ -16,7 +16,8 @@ from stepgen.plan.claims import (
 from stepgen.plan.coils import CoilDrive
 from stepgen.plan.drives import plan_drive
 from stepgen.plan.faults import Faults
-from stepgen.plan.isr import Storage, allocate, compose
+from stepgen.plan.instructions import Storage, allocate
+from stepgen.plan.isr import compose
 from stepgen.plan.kernels import Kernel, choose_kernel
 from stepgen.plan.model import MotorPlan, Plan, TimerPlan
 from stepgen.plan.motions import plan_motion

@@ -1,0 +1,75 @@
+"""
+Instructions of the hot path with their cycles (AVR instruction set manual), and what they use.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from stepgen.devices import Mcu, Register
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """
+    One line of the hot path: its text with named operands, its cycles and why it is there.
+
+    *label* stands before it. *cycles* are those of the usual way: a branch not taken.
+    """
+
+    text: str
+    cycles: int
+    note: str = ""
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Place:
+    """
+    Where a byte of a motor's state lives: in a GPIOR, or in RAM under a variable's name.
+    """
+
+    name: str
+    register: Register | None = None
+
+    def load(self, into: str, operand: str, note: str = "") -> Instruction:
+        """
+        Return the instruction that reads the byte.
+        """
+        text = f"in    {into}, %[{operand}]" if self.register else f"lds   {into}, %[{operand}]"
+        return Instruction(text, 1 if self.register else 2, note)
+
+    def store(self, source: str, operand: str, note: str = "") -> Instruction:
+        """
+        Return the instruction that writes the byte.
+        """
+        text = f"out   %[{operand}], {source}" if self.register else f"sts   %[{operand}], {source}"
+        return Instruction(text, 1 if self.register else 2, note)
+
+
+@dataclass(frozen=True)
+class Storage:
+    """
+    Where a motor keeps what its step interrupt needs.
+
+    Args:
+        count: Step interrupts until the next boundary, 1 to 255.
+        state: The kernel's byte: the bits to toggle next, or the row of the present phase.
+        scratch: SREG while a step interrupt runs; all motors share it, since none nests.
+    """
+
+    count: Place
+    state: Place
+    scratch: Place
+
+
+def allocate(mcu: Mcu, names: Iterable[str]) -> tuple[Storage, ...]:
+    """
+    Return the storage of each motor: the first one gets the GPIORs, which save it four cycles.
+    """
+    state, count, scratch = (Place(register.name, register) for register in mcu.gpiors)
+    return tuple(
+        Storage(count, state, scratch)
+        if index == 0
+        else Storage(Place(f"{name}Count"), Place(f"{name}State"), scratch)
+        for index, name in enumerate(names)
+    )
