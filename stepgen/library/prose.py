@@ -55,22 +55,40 @@ def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
         f"  {'signal':<10}{'pin':<6}port bit",
         *rows,
         "",
-        *comment_lines(_port_rule(motor)),
+        *comment_lines(port_rule(motor, board)),
         *comment_lines(taken),
     )
 
 
-def _port_rule(motor: MotorPlan) -> str:
+def port_rule(motor: MotorPlan, board: Board) -> str:
     """
     Return what the sketch may do to the ports of *motor*.
+
+    A single bit of a port within reach of SBI and CBI changes in one instruction; elsewhere the
+    sketch loads, changes and stores, and a step in between would be undone.
     """
-    ports = sorted({wire.pin.bit.port for wire in motor.drive.every_wire})
-    if motor.owns_ports:
-        return f"Port {motor.port_letters} belongs to the motor: the sketch must not write to it."
-    return (
-        f"The sketch may change other bits of port{'s' if len(ports) > 1 else ''} {listed(ports)} "
-        "with digitalWrite(), with single-bit sbi/cbi, or inside ATOMIC_BLOCK."
-    )
+    every = {wire.pin.bit.port for wire in motor.drive.every_wire}
+    stepping = {wire.pin.bit.port for wire in motor.drive.wires}
+    owned = stepping if motor.owns_ports else set()
+    rules = []
+    if owned:
+        rules.append(
+            f"Port {motor.port_letters} belongs to the motor: the sketch must not write to it."
+        )
+    shared = sorted(every - owned)
+    near = [port for port in shared if board.mcu.port(port).port.bit_addressable]
+    far = [port for port in shared if port not in near]
+    if near:
+        rules.append(
+            f"The sketch may change other bits of port{'s' if len(near) > 1 else ''} "
+            f"{listed(near)} with digitalWrite(), with single-bit sbi/cbi, or inside ATOMIC_BLOCK."
+        )
+    if far:
+        rules.append(
+            f"The sketch may change other bits of port{'s' if len(far) > 1 else ''} "
+            f"{listed(far)} with digitalWrite() or inside ATOMIC_BLOCK."
+        )
+    return " ".join(rules)
 
 
 def _pwm(motor: MotorPlan, board: Board) -> str:
@@ -117,7 +135,7 @@ def takes(plan: Plan) -> tuple[str, ...]:
         f"{_pwm(motor, plan.board)}."
         for motor in plan.motors
     ]
-    rows.extend(_port_rule(motor) for motor in plan.motors)
+    rows.extend(port_rule(motor, plan.board) for motor in plan.motors)
     rows.append("`GPIOR0`, `GPIOR1` and `GPIOR2`, which the Arduino core does not use.")
     return tuple(dict.fromkeys(rows))
 

@@ -21,6 +21,13 @@ class Instruction:
     note: str = ""
     label: str = ""
 
+    @property
+    def words(self) -> int:
+        """
+        Return its length in flash words: two with an address of 16 bits or more, else one.
+        """
+        return 2 if self.text.startswith(("lds", "sts", "jmp", "call")) else 1
+
 
 @dataclass(frozen=True)
 class Place:

@@ -18,11 +18,13 @@ class HandlerCycles:
 
     Args:
         longest: With everything at once, to the end of RETI; a bound that verification checks.
+        masked: How much longer a call has interrupts off than with a write to one port.
         to_clock: Until it starts the clock of a timer that it sets anew.
         to_clock_thinking: The same when it looked at the clock and made the step itself.
     """
 
     longest: int
+    masked: int
     to_clock: int
     to_clock_thinking: int
 
@@ -44,7 +46,7 @@ class Toggle:
 
     kind = "toggle"
     state_note = "the bits that the next step toggles"
-    handler = HandlerCycles(longest=134, to_clock=64, to_clock_thinking=84)
+    handler = HandlerCycles(longest=134, masked=0, to_clock=64, to_clock_thinking=84)
 
     @property
     def both(self) -> int:
@@ -87,7 +89,13 @@ class Ring:
         Return the cycles of the boundary handler, which makes a step itself when it thinks.
         """
         thinking = 92 + 11 * len(self.writes)
-        return HandlerCycles(longest=148, to_clock=69, to_clock_thinking=thinking)
+        more = len(self.writes) - 1
+        return HandlerCycles(
+            longest=148 + 4 * more,
+            masked=8 * more,
+            to_clock=69,
+            to_clock_thinking=thinking,
+        )
 
     @property
     def row_bytes(self) -> int:

@@ -27,6 +27,7 @@ from stepgen.plan.uses import Use, read_uses
 from stepgen.spec import LoadedSpec, Motor
 
 _OTHER_INTERRUPTS_CYCLES = 110  # the core's millis interrupt
+_LONGEST_ELAPSED_CYCLES = 255  # the library keeps in a byte how long ago a step was due
 _SMALLEST_PERIOD_CYCLES = 640  # system 1: 25 000 steps/s at 16 MHz
 
 
@@ -71,7 +72,9 @@ def _masked_bound_cycles(motors: tuple[MotorPlan, ...]) -> int:
     """
     Return the longest stretch of the library's own calls with interrupts off.
     """
-    return max((motor.motion.masked_cycles for motor in motors), default=0)
+    return max(
+        (motor.motion.masked_cycles + motor.kernel.handler.masked for motor in motors), default=0
+    )
 
 
 def _minimum_period_cycles(motors: tuple[MotorPlan, ...]) -> int:
@@ -167,7 +170,7 @@ def _plan_motor(
     # avr-gcc takes a function for an interrupt handler only when it is called __vector...
     handler = f"__vector_{name}_boundary"
     motion = plan_motion(motor.motion)
-    return MotorPlan(
+    planned = MotorPlan(
         name=name,
         motion=motion,
         drive=drive,
@@ -180,6 +183,12 @@ def _plan_motor(
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",
     )
+    if planned.elapsed_thinking_cycles > _LONGEST_ELAPSED_CYCLES:
+        faults.at("motion").report(
+            f"{motion.kind} takes too long with wires on ports {planned.port_letters}; use pins of "
+            "one or two ports, or motion constant"
+        )
+    return planned
 
 
 def _steps_per_turn(motor: Motor, drive: CoilDrive) -> Fraction | None:

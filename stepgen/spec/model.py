@@ -22,6 +22,17 @@ from stepgen.spec.turns import Steps
 
 _LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
+# What the helpers of a library begin with: millisCount(), checkSpeed(), chooseSetting().
+_HELPER_PREFIXES = frozenset({"millis", "check", "choose", "motorTimer", "timer0"})
+# Headers of the Arduino core and of libraries that come with it, and names that are no folder on
+# Windows; in lower case, since file names there and on macOS do not tell it apart.
+_DEVICES = {f"{device}{digit}" for device in ("com", "lpt") for digit in range(1, 10)}
+_CORE_HEADERS = """
+    arduino binary cdc client eeprom hardwareserial hid ipaddress main new pins_arduino
+    pluggableusb print printable server servo softwareserial spi stream udp usbapi usbcore
+    usbdesc wcharacter wire wiring_private wstring con prn aux nul
+"""
+_TAKEN_NAMES = _DEVICES | set(_CORE_HEADERS.split())
 SHORT_FORMS = {"timer": "timing", "pins": "drive", "sequence": "drive"}
 _DEFAULT_KINDS = {"timing": "fast-pwm", "motion": "constant"}
 _CATEGORIES = Literal[
@@ -62,6 +73,11 @@ class Library(SpecModel):
             raise ValueError(
                 f'"{self.name[:80]}" names no library: it becomes a folder and a header, so use '
                 "a letter followed by at most 62 letters, digits or underscores"
+            )
+        if self.name.lower() in _TAKEN_NAMES:
+            raise ValueError(
+                f'"{self.name}" is a header of the Arduino core, a library that comes with it, or '
+                f"a device; choose another name, such as My{self.name}"
             )
         return self
 
@@ -139,6 +155,19 @@ class Spec(SpecModel):
     @field_validator("motors")
     @classmethod
     def _motor_names_differ(cls, motors: dict[str, Motor]) -> dict[str, Motor]:
+        taken = sorted(set(motors) & _HELPER_PREFIXES)
+        if taken:
+            raise ValueError(
+                f'"{taken[0]}" begins names that every library has, such as those of its helpers; '
+                "choose another name"
+            )
+        for name in motors:
+            longer = [other for other in motors if re.match(rf"{name}[A-Z]", other)]
+            if longer:
+                raise ValueError(
+                    f'"{longer[0]}" begins with "{name}", so that their functions could share a '
+                    "name; rename one of them"
+                )
         lower = [name.lower() for name in motors]
         if len(set(lower)) < len(lower):
             raise ValueError(

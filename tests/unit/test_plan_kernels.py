@@ -289,3 +289,26 @@ def test_the_first_motor_gets_the_gpiors() -> None:
     # IN and OUT take a cycle, LDS and STS two; a step has four accesses to count and state.
     same = _motor("mega", drive="motor-shield", timer=3).hot_path
     assert plan.motors[1].hot_path.usual_cycles - same.usual_cycles == 4
+
+
+@pytest.mark.parametrize(
+    ("pins", "motion"),
+    [("[D6, D14, A8, D49]", "constant"), ("[D6, D14, D7, D15]", "update-events")],
+)
+def test_the_branch_to_the_boundary_reaches_it(pins: str, motion: str, tmp_path: Path) -> None:
+    """
+    BREQ reaches 63 words; the longest steps, on far ports with their state in RAM, are shorter.
+    """
+    spec = tmp_path / "far.yaml"
+    spec.write_text(
+        "library: Far\nboard: mega\nmotors:\n"
+        "  near: {drive: {kind: four-wire, pins: [D22, D23, D24, D25]}}\n"
+        f"  far: {{drive: {{kind: four-wire, pins: {pins}}}, motion: {motion}}}\n",
+        encoding="utf-8",
+    )
+
+    path = make_plan(load_spec(spec)).motors[1].hot_path
+
+    lines = [*path.usual, *path.clock]
+    start = next(index for index, line in enumerate(lines) if line.text == "breq  1f")
+    assert 40 < sum(line.words for line in lines[start + 1 :]) <= 63

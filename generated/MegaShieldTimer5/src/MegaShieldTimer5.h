@@ -64,8 +64,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 //   BRAKE A   D9    PH6
 //   BRAKE B   D8    PH5
 //
-// The sketch may change other bits of ports B, E and H with digitalWrite(), with single-bit
-// sbi/cbi, or inside ATOMIC_BLOCK.
+// The sketch may change other bits of ports B and E with digitalWrite(), with single-bit sbi/cbi,
+// or inside ATOMIC_BLOCK. The sketch may change other bits of port H with digitalWrite() or inside
+// ATOMIC_BLOCK.
 // Timer 5 belongs to the motor: no analogWrite() on D46, D45 or D44.
 
 // Steps for whole turns: 200 in each.
@@ -91,7 +92,8 @@ void motorShieldInit();
 int8_t motorSetSpeed(
     uint8_t control = 0, uint32_t timerTop32virtual = 0, uint32_t limit = 0);
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t motorReadStatus();
 
 // Where the motor is: 0 after motorShieldInit(), +1 for each step,

@@ -66,8 +66,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 //   coil C    A10   PK2
 //   coil D    A11   PK3
 //
-// The sketch may change other bits of port K with digitalWrite(), with single-bit sbi/cbi, or
-// inside ATOMIC_BLOCK.
+// The sketch may change other bits of port K with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 4 belongs to the motor: no analogWrite() on D6, D7 or D8.
 
 // Steps for whole turns, rounded: 4075.77 in each.
@@ -93,7 +92,8 @@ void panShieldInit();
 int8_t panSetSpeed(
     uint8_t control = 0, uint32_t timerTop32virtual = 0, uint32_t limit = 0);
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t panReadStatus();
 
 // Where the motor is: 0 after panShieldInit(), +1 for each step,
@@ -116,8 +116,9 @@ int8_t panRelease();
 //   BRAKE A   D9    PH6
 //   BRAKE B   D8    PH5
 //
-// The sketch may change other bits of ports B, E and H with digitalWrite(), with single-bit
-// sbi/cbi, or inside ATOMIC_BLOCK.
+// The sketch may change other bits of ports B and E with digitalWrite(), with single-bit sbi/cbi,
+// or inside ATOMIC_BLOCK. The sketch may change other bits of port H with digitalWrite() or inside
+// ATOMIC_BLOCK.
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
 
 // Steps for whole turns: 200 in each.
@@ -143,7 +144,8 @@ void tiltShieldInit();
 int8_t tiltSetSpeed(
     uint8_t control = 0, uint32_t timerTop32virtual = 0, uint32_t limit = 0);
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t tiltReadStatus();
 
 // Where the motor is: 0 after tiltShieldInit(), +1 for each step,

@@ -61,8 +61,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 //   coil C    A10   PK2
 //   coil D    A11   PK3
 //
-// The sketch may change other bits of port K with digitalWrite(), with single-bit sbi/cbi, or
-// inside ATOMIC_BLOCK.
+// The sketch may change other bits of port K with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 4 belongs to the motor: no analogWrite() on D6, D7 or D8.
 
 // Steps for whole turns, rounded: 4075.77 in each.
@@ -88,7 +87,8 @@ void motorShieldInit();
 int8_t motorSetSpeed(
     uint8_t control = 0, uint32_t timerTop32virtual = 0, uint32_t limit = 0);
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t motorReadStatus();
 
 // Where the motor is: 0 after motorShieldInit(), +1 for each step,

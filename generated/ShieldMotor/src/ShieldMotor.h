@@ -63,7 +63,8 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 //   BRAKE A   D9    PB1
 //   BRAKE B   D8    PB0
 //
-// Port B belongs to the motor: the sketch must not write to it.
+// Port B belongs to the motor: the sketch must not write to it. The sketch may change other bits of
+// port D with digitalWrite(), with single-bit sbi/cbi, or inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
 
 // Steps for whole turns: 200 in each.
@@ -89,7 +90,8 @@ void motorShieldInit();
 int8_t motorSetSpeed(
     uint8_t control = 0, uint32_t timerTop32virtual = 0, uint32_t limit = 0);
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t motorReadStatus();
 
 // Where the motor is: 0 after motorShieldInit(), +1 for each step,

@@ -93,7 +93,8 @@ void lowerShieldInit();
 int8_t lowerSetSpeed(
     uint8_t control = 0, uint32_t timerTop32virtual = 0, uint32_t limit = 0);
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t lowerReadStatus();
 
 // Where the motor is: 0 after lowerShieldInit(), +1 for each step,
@@ -114,8 +115,7 @@ int8_t lowerRelease();
 //   DIR A     D9    PH6
 //   DIR B     D8    PH5
 //
-// The sketch may change other bits of port H with digitalWrite(), with single-bit sbi/cbi, or
-// inside ATOMIC_BLOCK.
+// The sketch may change other bits of port H with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
 
 // Steps for whole turns: 400 in each.
@@ -141,7 +141,8 @@ void upperShieldInit();
 int8_t upperSetSpeed(
     uint8_t control = 0, uint32_t timerTop32virtual = 0, uint32_t limit = 0);
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t upperReadStatus();
 
 // Where the motor is: 0 after upperShieldInit(), +1 for each step,

@@ -54,7 +54,7 @@ constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops
 
 // The range of a virtual timer TOP: I/O clocks between two steps.
-constexpr uint32_t MOTOR_MIN_TOP = 758UL;  // 21108 steps/s
+constexpr uint32_t MOTOR_MIN_TOP = 778UL;  // 20566 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 4.19 s
 
 // I/O clocks in a second: 16 MHz, less what the CLKPR divider takes.
@@ -73,7 +73,8 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 //   BRAKE A   D9    PB1
 //   BRAKE B   D8    PB0
 //
-// Port B belongs to the motor: the sketch must not write to it.
+// Port B belongs to the motor: the sketch must not write to it. The sketch may change other bits of
+// port D with digitalWrite(), with single-bit sbi/cbi, or inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
 
 // Steps for whole turns: 200 in each.
@@ -119,7 +120,8 @@ void motorTimerUpdateCheck();
 void motorCallBackPositionReached(void (*userFunction)());
 void motorCallBackFault(void (*userFunction)());
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t motorReadStatus();
 
 // Where the motor is: 0 after motorShieldInit(), +1 for each step,

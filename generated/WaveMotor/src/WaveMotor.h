@@ -88,7 +88,8 @@ void motorShieldInit();
 int8_t motorSetSpeed(
     uint8_t control = 0, uint32_t timerTop32virtual = 0, uint32_t limit = 0);
 
-// How it goes: MOTOR_STAT_... bits.
+// How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
+// has passed; the motor counts as running until the step that is not made would be due.
 uint8_t motorReadStatus();
 
 // Where the motor is: 0 after motorShieldInit(), +1 for each step,

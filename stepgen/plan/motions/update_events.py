@@ -10,5 +10,5 @@ MOTION = Motion(
     handler_cycles=385,
     to_clock_cycles=21,
     thinking_cycles=74,
-    masked_cycles=360,
+    masked_cycles=380,
 )

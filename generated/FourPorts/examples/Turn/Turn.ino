@@ -1,6 +1,6 @@
 // Turns motor to and fro while the sketch goes on doing something else.
 
-#include <InvertedMotor.h>
+#include <FourPorts.h>
 
 void setup() {
   motorShieldInit();
