@@ -46,7 +46,7 @@ class Toggle:
 
     kind = "toggle"
     state_note = "the bits that the next step toggles"
-    handler = HandlerCycles(longest=134, masked=0, to_clock=64, to_clock_thinking=84)
+    handler = HandlerCycles(longest=143, masked=0, to_clock=64, to_clock_thinking=84)
 
     @property
     def both(self) -> int:
@@ -91,7 +91,7 @@ class Ring:
         thinking = 92 + 11 * len(self.writes)
         more = len(self.writes) - 1
         return HandlerCycles(
-            longest=148 + 4 * more,
+            longest=157 + 4 * more,
             masked=8 * more,
             to_clock=69,
             to_clock_thinking=thinking,

@@ -15,7 +15,7 @@ from stepgen.reference.timer import TimerSetting, timer_setting
 from stepgen.verify.bench import Answer, CallKind
 from stepgen.verify.oracle import WAKE_CYCLES, Scene
 from stepgen.verify.subject import Subject
-from stepgen.verify.trace import Run
+from stepgen.verify.trace import ClockStart, Run
 
 # The step interrupt sets the timer with a constant that was measured; compilers differ a little.
 _CALIBRATION_CYCLES = 8
@@ -34,7 +34,8 @@ def broken_rules(
     yield from _unmasked_calls(scene, answers)
     steps = [edge for edge in edges if edge.kind is EdgeKind.STEP]
     calls = [answer for answer in answers if answer.call.kind not in _NO_CODE]
-    yield from _wrong_changes(runs, calls, steps)
+    starts = scene.trace.clock_starts(subject.tccrb, subject.tcnt)
+    yield from _wrong_changes(runs, calls, steps, starts)
     yield from _wrong_starts(subject, scene, calls, steps)
     yield from _late_edges(scene.plan.motors[index], runs, calls, steps)
 
@@ -50,7 +51,10 @@ def _unmasked_calls(scene: Scene, answers: Sequence[Answer]) -> Iterator[str]:
 
 
 def _wrong_changes(
-    runs: Sequence[Run], calls: Sequence[Answer], steps: Sequence[Edge]
+    runs: Sequence[Run],
+    calls: Sequence[Answer],
+    steps: Sequence[Edge],
+    starts: Sequence[ClockStart],
 ) -> Iterator[str]:
     """
     After a change of speed the first new interval is right, within a tick and the lateness.
@@ -64,15 +68,22 @@ def _wrong_changes(
         run = by_deadline.get(first.deadline_cycle)
         if not is_first_of_call or run is None:
             continue
-        old, new = _setting(calls, before), _setting(calls, first)
+        old, new = _running_prescaler(starts, run.entered), _setting(calls, first)
         late = run.entered - run.raised
-        allowed = max(old.prescaler, new.prescaler) + late + _CALIBRATION_CYCLES
+        allowed = max(old, new.prescaler) + late + _CALIBRATION_CYCLES
         error = second.deadline_cycle - first.deadline_cycle - new.period_cycles
         if abs(error) > allowed:
             yield (
                 f"the interval after the step due at cycle {first.deadline_cycle} is {error:+d} "
                 f"cycles off; {allowed} are allowed"
             )
+
+
+def _running_prescaler(starts: Sequence[ClockStart], cycle: int) -> int:
+    """
+    Return the prescaler with which the timer ran at *cycle*: that of its last start.
+    """
+    return next(start.prescaler for start in reversed(starts) if start.cycle < cycle)
 
 
 def _setting(calls: Sequence[Answer], edge: Edge) -> TimerSetting:

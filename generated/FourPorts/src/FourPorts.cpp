@@ -165,7 +165,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR4B = _BV(WGM43) | _BV(WGM42) | setting.select;
 }
 
-// Timer 4 overflow: one step, 102 cycles from the interrupt's response to RETI; at most 277 when it
+// Timer 4 overflow: one step, 102 cycles from the interrupt's response to RETI; at most 286 when it
 // goes on in __vector_motor_boundary. The wires change 87 cycles after the timer wraps (92 before a
 // boundary). It writes port H, J, K and L and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.

@@ -158,7 +158,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR1B = _BV(WGM13) | _BV(WGM12) | setting.select;
 }
 
-// Timer 1 overflow: one step, 62 cycles from the interrupt's response to RETI; at most 222 when it
+// Timer 1 overflow: one step, 62 cycles from the interrupt's response to RETI; at most 231 when it
 // goes on in __vector_motor_boundary. The wires change 48 cycles after the timer wraps (53 before a
 // boundary). It writes port B and D and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.

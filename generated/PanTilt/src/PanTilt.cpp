@@ -154,7 +154,7 @@ INLINE void panRunTimer(Setting setting) {
   TCCR4B = _BV(WGM43) | _BV(WGM42) | setting.select;
 }
 
-// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 201 when it
+// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 210 when it
 // goes on in __vector_pan_boundary. The wires change 37 cycles after the timer wraps (42 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -481,7 +481,7 @@ INLINE void tiltRunTimer(Setting setting) {
   TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
 }
 
-// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 203 when it
+// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 212 when it
 // goes on in __vector_tilt_boundary. The wires change 39 cycles after the timer wraps (44 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

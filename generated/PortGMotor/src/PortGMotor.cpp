@@ -135,7 +135,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
 }
 
-// Timer 3 overflow: one step, 30 cycles from the interrupt's response to RETI; at most 167 when it
+// Timer 3 overflow: one step, 30 cycles from the interrupt's response to RETI; at most 176 when it
 // goes on in __vector_motor_boundary. The wires change 18 cycles after the timer wraps (23 before a
 // boundary). It writes port G and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

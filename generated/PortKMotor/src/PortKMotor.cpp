@@ -154,7 +154,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR4B = _BV(WGM43) | _BV(WGM42) | setting.select;
 }
 
-// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 201 when it
+// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 210 when it
 // goes on in __vector_motor_boundary. The wires change 37 cycles after the timer wraps (42 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
