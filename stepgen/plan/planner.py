@@ -18,7 +18,7 @@ from stepgen.plan.drives import plan_drive
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Storage, allocate
 from stepgen.plan.isr import compose
-from stepgen.plan.kernels import Kernel, choose_kernel
+from stepgen.plan.kernels import choose_kernel
 from stepgen.plan.model import MotorPlan, Plan, TimerPlan
 from stepgen.plan.motions import plan_motion
 from stepgen.plan.timings import plan_timing
@@ -185,8 +185,8 @@ def _plan_motor(
     )
     if planned.elapsed_thinking_cycles > _LONGEST_ELAPSED_CYCLES:
         faults.at("motion").report(
-            f"{motion.kind} takes too long with wires on ports {planned.port_letters}; use pins of "
-            "one or two ports, or motion constant"
+            f"takes too long with wires on ports {planned.port_letters}; use pins of one or two "
+            "ports, or motion constant"
         )
     return planned
 
@@ -195,6 +195,3 @@ def _steps_per_turn(motor: Motor, drive: CoilDrive) -> Fraction | None:
     if motor.steps_per_turn is None:
         return None
     return motor.steps_per_turn.exact * drive.steps_per_full_step
-
-
-__all__ = ["Kernel", "free_timers", "make_plan"]

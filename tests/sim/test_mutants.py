@@ -51,14 +51,14 @@ MUTANTS = (
     Mutant(
         "a position that is read without cli",
         "macros/motion.j2",
-        "ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position",
-        "{ position",
+        "  const Masked masked;\n  return static_cast<int32_t>(",
+        "  return static_cast<int32_t>(",
     ),
     Mutant(
         "a speed that is set without cli",
         "motions/constant.j2",
-        "  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {\n    const uint8_t before",
-        "  {\n    const uint8_t before",
+        "    const Masked masked;\n    const uint8_t before",
+        "    const uint8_t before",
     ),
     Mutant(
         "the pattern table reversed",

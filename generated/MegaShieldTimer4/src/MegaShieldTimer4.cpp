@@ -5,10 +5,21 @@
 
 #include <avr/interrupt.h>
 #include <avr/pgmspace.h>
-#include <util/atomic.h>
 
 // The step interrupt calls nothing, so what it uses must not become a call.
 #define INLINE static inline __attribute__((always_inline))
+
+// Interrupts are off as long as one of these lives. All that was written by then is in RAM before
+// they come on again: the compiler must not move it past that moment.
+struct Masked {
+  const uint8_t sreg;
+  Masked() : sreg(SREG) { cli(); }
+  ~Masked() {
+    asm volatile("" ::: "memory");
+    SREG = sreg;
+    asm volatile("" ::: "memory");
+  }
+};
 
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
@@ -268,7 +279,8 @@ void __vector_motor_boundary() {
 }
 
 void motorShieldInit() {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     motorStopTimer();
     motorMode = 0;
     motorStatus = 0;
@@ -289,7 +301,8 @@ void motorShieldInit() {
 int8_t motorSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    {
+      const Masked masked;
       motorStopTimer();
       if (!(control & MOTOR_CTRL_DRV_EN)) motorCoilsOff();
       motorReached(0);
@@ -299,11 +312,10 @@ int8_t motorSetSpeed(
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
   if (error) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-      motorStatus |= error == MOTOR_ERROR_CONTROL
-          ? MOTOR_STAT_FAULT
-          : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
-    }
+    const Masked masked;
+    motorStatus |= error == MOTOR_ERROR_CONTROL
+        ? MOTOR_STAT_FAULT
+        : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
@@ -314,7 +326,8 @@ int8_t motorSetSpeed(
   // Cycles from the due step until the interrupt has set the timer anew.
   const uint8_t elapsed = millisLimit ? 132 : 120;
   const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     const uint8_t before = motorMode;
     const uint32_t here = motorPosition();
     if ((before & kReverse) != reverse) {
@@ -355,7 +368,8 @@ int8_t motorSetSpeed(
 
 uint8_t motorReadStatus() {
   uint8_t status = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     status = motorStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (motorMode & (kThink | kCoast)) == kThink;
@@ -367,15 +381,15 @@ uint8_t motorReadStatus() {
 }
 
 int32_t motorReadPosition() {
-  uint32_t position = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position = motorPosition(); }
-  return static_cast<int32_t>(position);
+  const Masked masked;
+  return static_cast<int32_t>(motorPosition());
 }
 
 // Switches the coils on or off, unless the motor runs.
 static int8_t motorSetCoils(bool on) {
   int8_t result = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     if (motorMode & kRunning) {
       motorStatus |= MOTOR_STAT_FAULT;
       result = MOTOR_ERROR_RUNNING;

@@ -5,10 +5,21 @@
 
 #include <avr/interrupt.h>
 #include <avr/pgmspace.h>
-#include <util/atomic.h>
 
 // The step interrupt calls nothing, so what it uses must not become a call.
 #define INLINE static inline __attribute__((always_inline))
+
+// Interrupts are off as long as one of these lives. All that was written by then is in RAM before
+// they come on again: the compiler must not move it past that moment.
+struct Masked {
+  const uint8_t sreg;
+  Masked() : sreg(SREG) { cli(); }
+  ~Masked() {
+    asm volatile("" ::: "memory");
+    SREG = sreg;
+    asm volatile("" ::: "memory");
+  }
+};
 
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
@@ -278,7 +289,8 @@ void __vector_pan_boundary() {
 }
 
 void panShieldInit() {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     panStopTimer();
     panMode = 0;
     panStatus = 0;
@@ -295,7 +307,8 @@ void panShieldInit() {
 int8_t panSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    {
+      const Masked masked;
       panStopTimer();
       panCoilsOff();
       panReached(0);
@@ -305,11 +318,10 @@ int8_t panSetSpeed(
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
   if (error) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-      panStatus |= error == MOTOR_ERROR_CONTROL
-          ? MOTOR_STAT_FAULT
-          : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
-    }
+    const Masked masked;
+    panStatus |= error == MOTOR_ERROR_CONTROL
+        ? MOTOR_STAT_FAULT
+        : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
@@ -320,7 +332,8 @@ int8_t panSetSpeed(
   // Cycles from the due step until the interrupt has set the timer anew.
   const uint8_t elapsed = millisLimit ? 132 : 122;
   const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     const uint8_t before = panMode;
     const uint32_t here = panPosition();
     if ((before & kReverse) != reverse) {
@@ -359,7 +372,8 @@ int8_t panSetSpeed(
 
 uint8_t panReadStatus() {
   uint8_t status = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     status = panStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (panMode & (kThink | kCoast)) == kThink;
@@ -371,15 +385,15 @@ uint8_t panReadStatus() {
 }
 
 int32_t panReadPosition() {
-  uint32_t position = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position = panPosition(); }
-  return static_cast<int32_t>(position);
+  const Masked masked;
+  return static_cast<int32_t>(panPosition());
 }
 
 // Switches the coils on or off, unless the motor runs.
 static int8_t panSetCoils(bool on) {
   int8_t result = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     if (panMode & kRunning) {
       panStatus |= MOTOR_STAT_FAULT;
       result = MOTOR_ERROR_RUNNING;
@@ -602,7 +616,8 @@ void __vector_tilt_boundary() {
 }
 
 void tiltShieldInit() {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     tiltStopTimer();
     tiltMode = 0;
     tiltStatus = 0;
@@ -623,7 +638,8 @@ void tiltShieldInit() {
 int8_t tiltSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    {
+      const Masked masked;
       tiltStopTimer();
       if (!(control & MOTOR_CTRL_DRV_EN)) tiltCoilsOff();
       tiltReached(0);
@@ -633,11 +649,10 @@ int8_t tiltSetSpeed(
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
   if (error) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-      tiltStatus |= error == MOTOR_ERROR_CONTROL
-          ? MOTOR_STAT_FAULT
-          : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
-    }
+    const Masked masked;
+    tiltStatus |= error == MOTOR_ERROR_CONTROL
+        ? MOTOR_STAT_FAULT
+        : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
@@ -648,7 +663,8 @@ int8_t tiltSetSpeed(
   // Cycles from the due step until the interrupt has set the timer anew.
   const uint8_t elapsed = millisLimit ? 134 : 124;
   const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     const uint8_t before = tiltMode;
     const uint32_t here = tiltPosition();
     if ((before & kReverse) != reverse) {
@@ -689,7 +705,8 @@ int8_t tiltSetSpeed(
 
 uint8_t tiltReadStatus() {
   uint8_t status = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     status = tiltStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (tiltMode & (kThink | kCoast)) == kThink;
@@ -701,15 +718,15 @@ uint8_t tiltReadStatus() {
 }
 
 int32_t tiltReadPosition() {
-  uint32_t position = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position = tiltPosition(); }
-  return static_cast<int32_t>(position);
+  const Masked masked;
+  return static_cast<int32_t>(tiltPosition());
 }
 
 // Switches the coils on or off, unless the motor runs.
 static int8_t tiltSetCoils(bool on) {
   int8_t result = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     if (tiltMode & kRunning) {
       tiltStatus |= MOTOR_STAT_FAULT;
       result = MOTOR_ERROR_RUNNING;

@@ -5,10 +5,21 @@
 
 #include <avr/interrupt.h>
 #include <avr/pgmspace.h>
-#include <util/atomic.h>
 
 // The step interrupt calls nothing, so what it uses must not become a call.
 #define INLINE static inline __attribute__((always_inline))
+
+// Interrupts are off as long as one of these lives. All that was written by then is in RAM before
+// they come on again: the compiler must not move it past that moment.
+struct Masked {
+  const uint8_t sreg;
+  Masked() : sreg(SREG) { cli(); }
+  ~Masked() {
+    asm volatile("" ::: "memory");
+    SREG = sreg;
+    asm volatile("" ::: "memory");
+  }
+};
 
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
@@ -268,7 +279,8 @@ void __vector_lower_boundary() {
 }
 
 void lowerShieldInit() {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     lowerStopTimer();
     lowerMode = 0;
     lowerStatus = 0;
@@ -287,7 +299,8 @@ void lowerShieldInit() {
 int8_t lowerSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    {
+      const Masked masked;
       lowerStopTimer();
       if (!(control & MOTOR_CTRL_DRV_EN)) lowerCoilsOff();
       lowerReached(0);
@@ -297,11 +310,10 @@ int8_t lowerSetSpeed(
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
   if (error) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-      lowerStatus |= error == MOTOR_ERROR_CONTROL
-          ? MOTOR_STAT_FAULT
-          : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
-    }
+    const Masked masked;
+    lowerStatus |= error == MOTOR_ERROR_CONTROL
+        ? MOTOR_STAT_FAULT
+        : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
@@ -312,7 +324,8 @@ int8_t lowerSetSpeed(
   // Cycles from the due step until the interrupt has set the timer anew.
   const uint8_t elapsed = millisLimit ? 132 : 120;
   const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     const uint8_t before = lowerMode;
     const uint32_t here = lowerPosition();
     if ((before & kReverse) != reverse) {
@@ -353,7 +366,8 @@ int8_t lowerSetSpeed(
 
 uint8_t lowerReadStatus() {
   uint8_t status = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     status = lowerStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (lowerMode & (kThink | kCoast)) == kThink;
@@ -365,15 +379,15 @@ uint8_t lowerReadStatus() {
 }
 
 int32_t lowerReadPosition() {
-  uint32_t position = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position = lowerPosition(); }
-  return static_cast<int32_t>(position);
+  const Masked masked;
+  return static_cast<int32_t>(lowerPosition());
 }
 
 // Switches the coils on or off, unless the motor runs.
 static int8_t lowerSetCoils(bool on) {
   int8_t result = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     if (lowerMode & kRunning) {
       lowerStatus |= MOTOR_STAT_FAULT;
       result = MOTOR_ERROR_RUNNING;
@@ -608,7 +622,8 @@ void __vector_upper_boundary() {
 }
 
 void upperShieldInit() {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     upperStopTimer();
     upperMode = 0;
     upperStatus = 0;
@@ -625,7 +640,8 @@ void upperShieldInit() {
 int8_t upperSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    {
+      const Masked masked;
       upperStopTimer();
       upperCoilsOff();
       upperReached(0);
@@ -635,11 +651,10 @@ int8_t upperSetSpeed(
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
   if (error) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-      upperStatus |= error == MOTOR_ERROR_CONTROL
-          ? MOTOR_STAT_FAULT
-          : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
-    }
+    const Masked masked;
+    upperStatus |= error == MOTOR_ERROR_CONTROL
+        ? MOTOR_STAT_FAULT
+        : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
@@ -650,7 +665,8 @@ int8_t upperSetSpeed(
   // Cycles from the due step until the interrupt has set the timer anew.
   const uint8_t elapsed = millisLimit ? 134 : 126;
   const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     const uint8_t before = upperMode;
     const uint32_t here = upperPosition();
     if ((before & kReverse) != reverse) {
@@ -689,7 +705,8 @@ int8_t upperSetSpeed(
 
 uint8_t upperReadStatus() {
   uint8_t status = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     status = upperStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (upperMode & (kThink | kCoast)) == kThink;
@@ -701,15 +718,15 @@ uint8_t upperReadStatus() {
 }
 
 int32_t upperReadPosition() {
-  uint32_t position = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position = upperPosition(); }
-  return static_cast<int32_t>(position);
+  const Masked masked;
+  return static_cast<int32_t>(upperPosition());
 }
 
 // Switches the coils on or off, unless the motor runs.
 static int8_t upperSetCoils(bool on) {
   int8_t result = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     if (upperMode & kRunning) {
       upperStatus |= MOTOR_STAT_FAULT;
       result = MOTOR_ERROR_RUNNING;

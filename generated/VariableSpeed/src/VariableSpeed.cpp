@@ -5,10 +5,21 @@
 
 #include <avr/interrupt.h>
 #include <avr/pgmspace.h>
-#include <util/atomic.h>
 
 // The step interrupt calls nothing, so what it uses must not become a call.
 #define INLINE static inline __attribute__((always_inline))
+
+// Interrupts are off as long as one of these lives. All that was written by then is in RAM before
+// they come on again: the compiler must not move it past that moment.
+struct Masked {
+  const uint8_t sreg;
+  Masked() : sreg(SREG) { cli(); }
+  ~Masked() {
+    asm volatile("" ::: "memory");
+    SREG = sreg;
+    asm volatile("" ::: "memory");
+  }
+};
 
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
@@ -321,11 +332,6 @@ void __vector_motor_boundary() {
     due = motorHasEvents(MOTOR_CTRL_IRQ_TIMING) &&
           static_cast<int32_t>(now - motorEventAt) >= 0;
     if (due) motorEventAt += motorInterval;
-  } else if (motorMode & kCoast) {
-    GPIOR1 = 1;  // there was no step
-    motorCoilsOff();
-    motorHalt(0);
-    return;
   }
   if (motorNext.select) {
     Setting setting = motorNext;
@@ -363,7 +369,8 @@ void __vector_motor_boundary() {
 }
 
 void motorShieldInit() {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     motorStopTimer();
     motorMode = 0;
     motorStatus = 0;
@@ -383,7 +390,8 @@ int8_t motorSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit, uint32_t timerModification,
     uint16_t timerUpd_ms, uint16_t modCounts) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    {
+      const Masked masked;
       motorStopTimer();
       if (!(control & MOTOR_CTRL_DRV_EN)) motorCoilsOff();
       motorReached(0);
@@ -396,7 +404,8 @@ int8_t motorSetSpeed(
     error = MOTOR_ERROR_UPDATE;
   }
   if (error) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    {
+      const Masked masked;
       motorFault(
           error == MOTOR_ERROR_UPDATE ? MOTOR_STAT_FAULT
                                       : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR);
@@ -412,7 +421,8 @@ int8_t motorSetSpeed(
   const bool bySteps = control & MOTOR_CTRL_UPDATE_STEPS;
   if (variable && (control & MOTOR_CTRL_IRQ_TIMING) && !bySteps) mode |= kClock;
   const Setting setting = chooseSetting(timerTop32virtual, 140);
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     const uint8_t before = motorMode;
     const uint32_t here = motorPosition();
     const uint32_t now = timer0_millis;
@@ -466,7 +476,8 @@ static bool motorMillisOver() {
 void motorTimerUpdateCheck() {
   bool reached = false;
   bool fault = false;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     if ((motorMode & kRunning) && motorUpdates &&
         !(motorControl & MOTOR_CTRL_IRQ_TIMING)) {
       const bool bySteps = motorControl & MOTOR_CTRL_UPDATE_STEPS;
@@ -495,16 +506,17 @@ void motorTimerUpdateCheck() {
 }
 
 void motorCallBackPositionReached(void (*userFunction)()) {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { motorOnReached = userFunction; }
+  { const Masked masked; motorOnReached = userFunction; }
 }
 
 void motorCallBackFault(void (*userFunction)()) {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { motorOnFault = userFunction; }
+  { const Masked masked; motorOnFault = userFunction; }
 }
 
 uint8_t motorReadStatus() {
   uint8_t status = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     status = motorStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     if (motorMillisOver()) status |= MOTOR_STAT_REACHED;
@@ -513,15 +525,15 @@ uint8_t motorReadStatus() {
 }
 
 int32_t motorReadPosition() {
-  uint32_t position = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { position = motorPosition(); }
-  return static_cast<int32_t>(position);
+  const Masked masked;
+  return static_cast<int32_t>(motorPosition());
 }
 
 // Switches the coils on or off, unless the motor runs.
 static int8_t motorSetCoils(bool on) {
   int8_t result = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const Masked masked;
     if (motorMode & kRunning) {
       motorFault(MOTOR_STAT_FAULT);
       result = MOTOR_ERROR_RUNNING;
