@@ -40,13 +40,13 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
         _place_operand("scratch", storage.scratch),
         _place_operand("count", storage.count),
         _place_operand("state", storage.state),
-        f'[mode] "i"(&{motor.name}Mode)',
+        f'[mode] "i"(&{motor.name}Motion.mode)',
         f'[think] "I"({THINK_BIT})',
     ]
     if motor.motion.watches_clock:
         operands += [
             f'[clock] "I"({CLOCK_BIT})',
-            f'[wake] "i"(&{motor.name}Wake)',
+            f'[wake] "i"(&{motor.name}Motion.wake)',
             '[millis] "i"(&timer0_millis)',
         ]
     kernel = motor.kernel

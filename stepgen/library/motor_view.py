@@ -11,6 +11,7 @@ from stepgen.library.prose import isr_contract, rest_comment, summary, wiring
 from stepgen.plan.model import MotorPlan
 from stepgen.plan.timings.fast_pwm import PRESCALERS
 
+_BYTE_MAX = 0xFF
 _EXAMPLE_SPEED_SPS = 200  # slow enough for any motor, a 28BYJ-48 included
 
 
@@ -82,9 +83,14 @@ class MotorView:
     released: tuple[Bits, ...]
     low_at_start: tuple[Bits, ...]
     outputs: tuple[Bits, ...]
-    elapsed: int
-    elapsed_thinking: int
-    later_ticks: tuple[int, ...]
+    linkage: str
+    object: str
+    elapsed_type: str
+    elapsed_read: str
+    elapsed_ticks: tuple[str, ...]
+    elapsed_woken: int
+    elapsed_limited: int
+    elapsed_note: str
     isr_contract: tuple[str, ...]
     usual: tuple[Line, ...]
     clock: tuple[Line, ...]
@@ -101,6 +107,7 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
     Return everything that the templates print about *motor*.
     """
     storage, mcu = motor.storage, board.mcu
+    fits = max(motor.elapsed_cycles) <= _BYTE_MAX
     return MotorView(
         name=motor.name,
         title=motor.name[0].upper() + motor.name[1:],
@@ -124,9 +131,16 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
         released=bit_groups(motor.drive.released, mcu),
         low_at_start=bit_groups(motor.drive.every_wire, mcu),
         outputs=bit_groups(motor.drive.every_wire, mcu),
-        elapsed=motor.elapsed_cycles,
-        elapsed_thinking=motor.elapsed_thinking_cycles,
-        later_ticks=_ticks(motor.elapsed_thinking_cycles - motor.elapsed_cycles),
+        linkage="SHARED" if motor.motion.watches_clock else "INLINE",
+        object=f"near({motor.name}Motion)" if motor.motion.watches_clock else f"{motor.name}Motion",
+        elapsed_type="uint8_t" if fits else "uint16_t",
+        elapsed_read="pgm_read_byte" if fits else "pgm_read_word",
+        elapsed_ticks=tuple(_ticks(cycles) for cycles in motor.elapsed_cycles),
+        elapsed_woken=len(PRESCALERS),
+        elapsed_limited=2 * len(PRESCALERS),
+        elapsed_note="; then both with a limit in\n// milliseconds"
+        if motor.motion.watches_clock
+        else "",
         isr_contract=isr_contract(motor),
         usual=instruction_lines(motor.hot_path.usual),
         clock=instruction_lines(motor.hot_path.clock),
@@ -141,11 +155,11 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
     )
 
 
-def _ticks(cycles: int) -> tuple[int, ...]:
+def _ticks(cycles: int) -> str:
     """
-    Return *cycles* in ticks of the first three prescalers; the others' ticks are longer.
+    Return *cycles* in whole ticks of each prescaler, as entries of a table.
     """
-    return tuple(cycles // prescaler for prescaler in PRESCALERS[:3])
+    return " ".join(f"{cycles // prescaler}," for prescaler in PRESCALERS)
 
 
 def module_name(kind: str) -> str:

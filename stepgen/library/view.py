@@ -48,7 +48,6 @@ class LibraryView:
     codes: tuple[Definition, ...]
     constants: tuple[Named, ...]
     motion_names: tuple[str, ...]
-    setting_macro: str
     think_bit: int
     timing_name: str
     motors: tuple[MotorView, ...]
@@ -89,7 +88,6 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         codes=codes(plan),
         constants=_constants(plan),
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
-        setting_macro=_setting_macro(plan),
         think_bit=THINK_BIT,
         timing_name=module_name(plan.motors[0].timing.kind),
         motors=motors,
@@ -97,14 +95,6 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         names=names,
         takes=takes(plan),
     )
-
-
-def _setting_macro(plan: Plan) -> str:
-    """
-    Return the macro that chooses timer settings: the short one, or the one for interrupts.
-    """
-    in_interrupt = any(motor.motion.watches_clock for motor in plan.motors)
-    return "quick_setting" if in_interrupt else "short_setting"
 
 
 def _claims(plan: Plan) -> tuple[Named, ...]:

@@ -28,6 +28,7 @@ class Motion:
         handler_cycles: How much longer the handler of the rare ways can take.
         to_clock_cycles: How much later it starts the clock of a timer that it sets anew.
         thinking_cycles: The same when it made the step itself.
+        limit_cycles: How much later still with a limit in milliseconds.
         masked_cycles: Longest stretch of a call of the library with interrupts off.
     """
 
@@ -36,6 +37,7 @@ class Motion:
     handler_cycles: int
     to_clock_cycles: int
     thinking_cycles: int
+    limit_cycles: int
     masked_cycles: int
 
 

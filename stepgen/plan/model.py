@@ -73,26 +73,19 @@ class MotorPlan:
     owns_ports: bool
 
     @property
-    def elapsed_cycles(self) -> int:
+    def elapsed_cycles(self) -> tuple[int, ...]:
         """
         Return the cycles from a due step until the boundary handler has set the timer anew.
-        """
-        return (
-            self.hot_path.boundary_entry_cycles
-            + self.kernel.handler.to_clock
-            + self.motion.to_clock_cycles
-        )
 
-    @property
-    def elapsed_thinking_cycles(self) -> int:
+        Then the same where the handler looked at the clock and made the step itself; then both
+        with a limit in milliseconds, for a motion that takes longer with one.
         """
-        Return the same where the handler itself made the step, because of a millisecond limit.
-        """
-        return (
-            self.hot_path.think_entry_cycles
-            + self.kernel.handler.to_clock_thinking
-            + self.motion.thinking_cycles
-        )
+        handler, motion = self.kernel.handler, self.motion
+        usual = self.hot_path.boundary_entry_cycles + handler.to_clock + motion.to_clock_cycles
+        woken = self.hot_path.think_entry_cycles + handler.to_clock_thinking
+        both = (usual, woken + motion.thinking_cycles)
+        limited = tuple(cycles + motion.limit_cycles for cycles in both)
+        return both + limited if motion.limit_cycles else both
 
     @property
     def isr_bound_cycles(self) -> int:

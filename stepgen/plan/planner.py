@@ -27,7 +27,6 @@ from stepgen.plan.uses import Use, read_uses
 from stepgen.spec import LoadedSpec, Motor
 
 _OTHER_INTERRUPTS_CYCLES = 110  # the core's millis interrupt
-_LONGEST_ELAPSED_CYCLES = 255  # the library keeps in a byte how long ago a step was due
 _SMALLEST_PERIOD_CYCLES = 640  # system 1: 25 000 steps/s at 16 MHz
 
 
@@ -170,7 +169,7 @@ def _plan_motor(
     # avr-gcc takes a function for an interrupt handler only when it is called __vector...
     handler = f"__vector_{name}_boundary"
     motion = plan_motion(motor.motion)
-    planned = MotorPlan(
+    return MotorPlan(
         name=name,
         motion=motion,
         drive=drive,
@@ -183,12 +182,6 @@ def _plan_motor(
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",
     )
-    if planned.elapsed_thinking_cycles > _LONGEST_ELAPSED_CYCLES:
-        faults.at("motion").report(
-            f"takes too long with wires on ports {planned.port_letters}; use pins of one or two "
-            "ports, or motion constant"
-        )
-    return planned
 
 
 def _steps_per_turn(motor: Motor, drive: CoilDrive) -> Fraction | None:

@@ -39,14 +39,14 @@ MUTANTS = (
     Mutant(
         "a limit that is off by one",
         "motions/constant.j2",
-        "const uint32_t rest = steps - 1;",
-        "const uint32_t rest = steps;",
+        "const uint32_t rest = limit - 1;",
+        "const uint32_t rest = limit;",
     ),
     Mutant(
         "the bytes of OCR swapped",
         "timings/fast_pwm.j2",
-        "{{ timer.ocra }} = setting.top;",
-        "{{ timer.ocra }} = __builtin_bswap16(setting.top);",
+        "{{ timer.ocra }} = next.top;",
+        "{{ timer.ocra }} = __builtin_bswap16(next.top);",
     ),
     Mutant(
         "a position that is read without cli",
@@ -57,8 +57,8 @@ MUTANTS = (
     Mutant(
         "a speed that is set without cli",
         "motions/constant.j2",
-        "    const Masked masked;\n    const uint8_t before",
-        "    const uint8_t before",
+        "  const Masked masked;\n  const uint8_t before",
+        "  const uint8_t before",
     ),
     Mutant(
         "the pattern table reversed",
@@ -82,14 +82,14 @@ MUTANTS = (
     Mutant(
         "a late TOP: the period in progress is not looked at",
         "timings/fast_pwm.j2",
-        "== setting.select) {",
-        "!= 99) {",
+        "if (({{ timer.tccrb }} & 7) != next.select) return;",
+        "",
     ),
     Mutant(
         "a timer that starts from zero after the step interrupt has set it",
         "timings/fast_pwm.j2",
-        "{{ timer.tcnt }} = setting.elapsed;",
-        "{{ timer.tcnt }} = 0;",
+        "{{ timer.tcnt }} = elapsed;",
+        "{{ timer.tcnt }} = elapsed & 0;",
     ),
     Mutant(
         "coils that go off with the last step",
@@ -101,29 +101,29 @@ MUTANTS = (
     Mutant(
         "an update event that is one too many",
         "motions/update_events.j2",
-        "if (--{{ motor.name }}Updates == 0)",
-        "if ({{ motor.name }}Updates-- == 0)",
+        "if (--motion.updates == 0)",
+        "if (motion.updates-- == 0)",
         spec="uno_variable_speed",
     ),
     Mutant(
         "a new TOP that loses a step count when the prescaler changes",
         "motions/update_events.j2",
-        "{{ motor.name }}Rest += ahead;",
-        "{{ motor.name }}Rest += ahead - 1;",
+        "motion.rest += ahead;",
+        "motion.rest += ahead - 1;",
         spec="uno_variable_speed",
     ),
     Mutant(
         "a clock that is looked at too late",
         "motions/update_events.j2",
-        "{{ motor.name }}Wake = now + wait;",
-        "{{ motor.name }}Wake = now + wait + 1;",
+        "motion.wake = millisNow() + wait;",
+        "motion.wake = millisNow() + wait + 1;",
         spec="uno_variable_speed",
     ),
     Mutant(
         "a millisecond limit that is one step late",
         "motions/constant.j2",
-        "{{ motor.name }}EndMillis) < 0)",
-        "{{ motor.name }}EndMillis) <= 0)",
+        "motion.endMillis) < 0)",
+        "motion.endMillis) <= 0)",
     ),
 )
 

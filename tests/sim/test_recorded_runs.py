@@ -38,6 +38,12 @@ CASE_2_TOPS = (
 CASE_2_MODIFICATIONS = (1192500, 596250, 298125, 149062, 74531, 37265, 18632, 9316, 4658, 2329)
 
 
+# Where VariableMotion keeps them: three bytes, wake (2), rest, target, start, limit (4 each),
+# next (3) come first; nothing is aligned on an AVR.
+TOP_OFFSET = 3 + 2 + 4 * 4 + 3
+MODIFICATION_OFFSET = TOP_OFFSET + 4
+
+
 @dataclass(frozen=True)
 class Seen:
     """
@@ -63,9 +69,10 @@ def look(bench: Bench) -> Seen:
     """
     Read the library's variables from the chip's RAM, and ask it for status and position.
     """
+    state = bench.machine.symbol("_ZL11motorMotion")
     top, modification = (
-        int.from_bytes(bench.machine.read_ram(bench.machine.symbol(name), 4), "little")
-        for name in ("_ZL8motorTop", "_ZL17motorModification")
+        int.from_bytes(bench.machine.read_ram(state + offset, 4), "little")
+        for offset in (TOP_OFFSET, MODIFICATION_OFFSET)
     )
     answer = bench.call(Call(CallKind.READ))
     return Seen(top, modification, answer.position, Status(answer.status))

@@ -8,18 +8,29 @@
 
 // The step interrupt calls nothing, so what it uses must not become a call.
 #define INLINE static inline __attribute__((always_inline))
+// What several callers use exists once, though the compiler would rather copy it.
+#define SHARED static __attribute__((noinline))
 
 // Interrupts are off as long as one of these lives. All that was written by then is in RAM before
 // they come on again: the compiler must not move it past that moment.
 struct Masked {
   const uint8_t sreg;
-  Masked() : sreg(SREG) { cli(); }
-  ~Masked() {
+  __attribute__((always_inline)) Masked() : sreg(SREG) { cli(); }
+  __attribute__((always_inline)) ~Masked() {
     asm volatile("" ::: "memory");
     SREG = sreg;
     asm volatile("" ::: "memory");
   }
 };
+
+// The same object by a pointer whose value the compiler does not know: members are then two bytes
+// of code away, where an absolute address takes four.
+template <typename T>
+INLINE T &near(T &object) {
+  T *pointer = &object;
+  asm("" : "+b"(pointer));
+  return *pointer;
+}
 
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
@@ -43,26 +54,37 @@ constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
 
-// A timer's TOP and clock select bits, and how many ticks ago its period began when a step
-// interrupt sets it to work.
+// A timer's TOP and clock select bits; 0 selects no clock.
 struct Setting {
   uint16_t top;
   uint8_t select;
-  uint8_t elapsed;
 };
 
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
-static Setting chooseSetting(uint32_t period, uint8_t elapsed) {
+SHARED Setting chooseSetting(uint32_t period) {
   uint8_t select = 1;
-  while (period > 65535) {
-    const uint8_t shift = select < 3 ? 3 : 2;
-    period >>= shift;
-    elapsed >>= shift;
+  while (period >> 16) {
+    period >>= 2;
+    if (select < 3) period >>= 1;
     ++select;
   }
-  return {static_cast<uint16_t>(period - 1), select, elapsed};
+  return {static_cast<uint16_t>(period - 1), select};
 }
+
+// What is kept of a motion at constant speed.
+struct ConstantMotion {
+  uint8_t mode;  // kRunning, kReverse and so on
+  uint8_t status;  // MOTOR_STAT_...
+  uint8_t run;  // steps counted down at a time: 255, or 1 to think before each
+  uint16_t rest;  // steps to make after those that are counted down
+  uint16_t restHigh;  // and their upper half
+  uint32_t target;  // the position when all of them are made
+  uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
+  __uint24 endLaps;  // after so many more laps of 32768 ms
+  Setting next;  // the next step sets the timer to this, unless its select is 0,
+  uint16_t elapsed;  // which takes so many ticks
+};
 
 // Returns why a call of a speed function must be refused, or 0.
 static int8_t checkSpeed(uint32_t period) {
@@ -71,7 +93,7 @@ static int8_t checkSpeed(uint32_t period) {
   return 0;
 }
 
-uint32_t motorTimerGetIOclocksPerSecond() {
+__attribute__((noinline)) uint32_t motorTimerGetIOclocksPerSecond() {
   return F_CPU >> (CLKPR & 0x0F);  // CLKPS: the divider is a power of two
 }
 
@@ -95,30 +117,7 @@ static const uint8_t motorRing[] PROGMEM __attribute__((aligned(16))) = {
      10, 0x80,  // back from 3
 };
 
-static uint8_t motorMode;  // kRunning, kReverse and so on
-static uint8_t motorStatus;  // MOTOR_STAT_...
-// Steps counted down at a time: 255, or 1 to think before each.
-static uint8_t motorRun;
-// Steps to make after those that are counted down in GPIOR1, and their upper half.
-static uint16_t motorRest;
-static uint16_t motorRestHigh;
-// The position when all of them are made.
-static uint32_t motorTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
-static uint16_t motorEndMillis;
-static __uint24 motorEndLaps;
-// The next step sets the timer to this, unless its select is 0.
-static Setting motorNext;
-
-// Where the motor is: the target less what is left to do. Only while interrupts are off.
-static uint32_t motorPosition() {
-  const uint32_t rest =
-      static_cast<uint32_t>(motorRestHigh) << 16 | motorRest;
-  const uint32_t left = rest + GPIOR1;
-  return motorMode & kReverse
-      ? motorTarget + left
-      : motorTarget - left;
-}
+static ConstantMotion motorMotion;
 
 // Writes the pattern of the present phase. Only while interrupts are off.
 INLINE void motorShow() {
@@ -138,6 +137,33 @@ INLINE void motorCoilsOff() {
   PORTE &= 0xDF;  // PWM A
 }
 
+// Steps that are left to do. Only while interrupts are off.
+INLINE uint32_t motorLeft() {
+  auto &motion = near(motorMotion);
+  return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + GPIOR1;
+}
+
+// Where the motor is: the target less what is left to do. Only while interrupts are off.
+SHARED uint32_t motorPosition() {
+  auto &motion = near(motorMotion);
+  const uint32_t left = motorLeft();
+  return motion.target + (motion.mode & kReverse ? left : -left);
+}
+
+// Lets the current of the present phase flow. Only while interrupts are off.
+SHARED void motorEnergise() {
+  motorShow();
+  PORTB |= 0x20;  // PWM B
+  PORTE |= 0x20;  // PWM A
+}
+
+// Ticks since the step was due when the interrupt has set the timer anew, for each clock select
+// from 1 on; then the same when it made the step itself.
+static const uint8_t motorElapsed[] PROGMEM = {
+    120, 15, 1, 0, 0,
+    132, 16, 2, 0, 0,
+};
+
 // Stops the timer; no step comes after this. Only while interrupts are off.
 INLINE void motorStopTimer() {
   TCCR3B = 0;
@@ -148,14 +174,25 @@ INLINE void motorStopTimer() {
 // Sets a stopped or running timer to work. OCR3A is written twice: without WGM31
 // and WGM30 (mode 12) it goes straight to the comparator, with them (mode 15) into the
 // buffer from which each period takes it.
-INLINE void motorRunTimer(Setting setting) {
+INLINE void motorRunTimer(uint8_t elapsed) {
+  Setting &next = motorMotion.next;
   TCCR3B = _BV(WGM33) | _BV(WGM32);
   TCCR3A = 0;
-  OCR3A = setting.top;
-  TCNT3 = setting.elapsed;
+  OCR3A = next.top;
+  TCNT3 = elapsed;
   TCCR3A = _BV(WGM31) | _BV(WGM30);
-  OCR3A = setting.top;
-  TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
+  OCR3A = next.top;
+  TCCR3B = _BV(WGM33) | _BV(WGM32) | next.select;
+  next.select = 0;
+}
+
+// Leaves the setting to the timer, which takes it over when the interval in progress ends, if the
+// prescaler stays and that end is not due already. Otherwise the next step sets the timer.
+INLINE void motorTakeOver() {
+  Setting &next = motorMotion.next;
+  if ((TCCR3B & 7) != next.select) return;
+  OCR3A = next.top;
+  if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
 // Timer 3 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 208 when it
@@ -219,26 +256,33 @@ ISR(TIMER3_OVF_vect, ISR_NAKED) {
         [scratch] "I"(_SFR_IO_ADDR(GPIOR2)),
         [count] "I"(_SFR_IO_ADDR(GPIOR1)),
         [state] "I"(_SFR_IO_ADDR(GPIOR0)),
-        [mode] "i"(&motorMode),
+        [mode] "i"(&motorMotion.mode),
         [think] "I"(0),
         [ring] "i"(motorRing),
         [port0] "I"(_SFR_IO_ADDR(PORTB))
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped.
+// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
 INLINE void motorReached(uint8_t mode) {
-  motorMode = (motorMode & kReverse) | mode;
-  motorStatus = (motorStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+  auto &motion = motorMotion;
+  motion.mode = (motion.mode & kReverse) | mode;
+  motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+}
+
+INLINE void motorHalt(uint8_t mode) {
+  motorStopTimer();
+  motorReached(mode);
 }
 
 // Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
 // before each step. Only while interrupts are off.
 INLINE bool motorMillisOver() {
-  if (static_cast<int16_t>(millisCount() - motorEndMillis) < 0) return false;
-  if (motorEndLaps == 0) return true;
-  --motorEndLaps;
-  motorEndMillis += 0x8000;
+  auto &motion = motorMotion;
+  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
+  if (motion.endLaps == 0) return true;
+  --motion.endLaps;
+  motion.endMillis += 0x8000;
   return false;
 }
 
@@ -247,136 +291,118 @@ INLINE bool motorMillisOver() {
 // millisecond limit runs.
 extern "C" void __vector_motor_boundary() __attribute__((signal, used, externally_visible));
 void __vector_motor_boundary() {
-  const uint8_t mode = motorMode;
+  auto &motion = motorMotion;
+  const uint8_t mode = motion.mode;
   if (mode & kThink) {
     if ((mode & kCoast) || motorMillisOver()) {
       GPIOR1 = 1;  // there was no step
-      motorStopTimer();
-      motorReached(0);
+      motorHalt(0);
       return;
     }
     motorStep();
   }
-  if (motorNext.select) {
-    motorRunTimer(motorNext);
-    motorNext.select = 0;
-  }
-  const uint16_t rest = motorRest;
-  uint8_t run = motorRun;
+  if (motion.next.select) motorRunTimer(motion.elapsed);
+  const uint16_t rest = motion.rest;
+  uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || motorRestHigh) {
-      --motorRestHigh;
+    if ((mode & kEndless) || motion.restHigh) {
+      --motion.restHigh;
     } else if (rest) {
       run = rest;
     } else {
-      motorStopTimer();
-      motorReached(0);
+      motorHalt(0);
       return;
     }
   }
-  motorRest = rest - run;
+  motion.rest = rest - run;
   GPIOR1 = run;
 }
 
 void motorShieldInit() {
-  {
-    const Masked masked;
-    motorStopTimer();
-    motorMode = 0;
-    motorStatus = 0;
-    motorRest = 0;
-    motorRestHigh = 0;
-    motorTarget = 0;
-    GPIOR1 = 0;
-    GPIOR0 = 0;  // phase 0, going forward
-    PORTB &= 0x1F;  // DIR A, DIR B, PWM B
-    PORTE &= 0xDF;  // PWM A
-    PORTH &= 0x9F;  // BRAKE A, BRAKE B
-    DDRB |= 0xE0;  // DIR A, DIR B, PWM B
-    DDRE |= 0x20;  // PWM A
-    DDRH |= 0x60;  // BRAKE A, BRAKE B
-  }
+  const Masked masked;
+  motorStopTimer();
+  auto &motion = near(motorMotion);
+  motion.mode = 0;
+  motion.status = 0;
+  motion.rest = 0;
+  motion.target = 0;
+  motion.restHigh = 0;
+  GPIOR1 = 0;
+  GPIOR0 = 0;  // phase 0, going forward
+  PORTB &= 0x1F;  // DIR A, DIR B, PWM B
+  PORTE &= 0xDF;  // PWM A
+  PORTH &= 0x9F;  // BRAKE A, BRAKE B
+  DDRB |= 0xE0;  // DIR A, DIR B, PWM B
+  DDRE |= 0x20;  // PWM A
+  DDRH |= 0x60;  // BRAKE A, BRAKE B
 }
 
 int8_t motorSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    {
-      const Masked masked;
-      motorStopTimer();
-      if (!(control & MOTOR_CTRL_DRV_EN)) motorCoilsOff();
-      motorReached(0);
-    }
+    const Masked masked;
+    if (!(control & MOTOR_CTRL_DRV_EN)) motorCoilsOff();
+    motorHalt(0);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
+  auto &motion = near(motorMotion);
   if (error) {
     const Masked masked;
-    motorStatus |= error == MOTOR_ERROR_CONTROL
+    motion.status |= error == MOTOR_ERROR_CONTROL
         ? MOTOR_STAT_FAULT
         : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
-  const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
-  const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
-  const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
-  const uint32_t rest = steps - 1;
-  // Cycles from the due step until the interrupt has set the timer anew.
-  const uint8_t elapsed = millisLimit ? 132 : 120;
-  const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  {
-    const Masked masked;
-    const uint8_t before = motorMode;
-    const uint32_t here = motorPosition();
-    if ((before & kReverse) != reverse) {
-      GPIOR0 += reverse ? 2 : -2;
-    }
-    motorTarget = reverse ? here - steps : here + steps;
-    motorRest = rest;
-    motorRestHigh = rest >> 16;
-    GPIOR1 = 1;
-    motorEndMillis = millisCount() + (limit & 0x7FFF);
-    motorEndLaps = laps;
-    motorStatus = MOTOR_STAT_SPIN_FIXED;
-    uint8_t mode = reverse | kRunning;
-    if (millisLimit) mode |= kThink;
-    motorRun = millisLimit ? 1 : 255;
-    if (steps == 0) mode |= kEndless;
-    motorMode = mode;
-    if (before & kRunning) {
-      motorNext = setting;
-      if ((TCCR3B & 7) == setting.select) {
-        OCR3A = setting.top;  // the timer takes it over when the interval in progress ends
-        if (!(TIFR3 & _BV(TOV3))) motorNext.select = 0;  // not due already
-      }
-    } else {
-      motorStopTimer();
-      motorShow();
-      PORTB |= 0x20;  // PWM B
-      PORTE |= 0x20;  // PWM A
-      motorNext.select = 0;
-      Setting now = setting;
-      now.elapsed = 0;
-      motorRunTimer(now);
-      TIMSK3 = _BV(TOIE3);
-    }
+  uint8_t mode = kRunning;
+  if (control & MOTOR_CTRL_DIRECTION) mode |= kReverse;
+  uint32_t millis = 0;
+  if (control & MOTOR_CTRL_ENDPOINT_MILLIS) {
+    millis = limit;
+    limit = 0;
+    if (millis) mode |= kThink;
+  }
+  if (limit == 0) mode |= kEndless;
+  const __uint24 laps = millis >> 15;
+  const uint32_t rest = limit - 1;
+  const Setting setting = chooseSetting(timerTop32virtual);
+  const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
+  const uint16_t elapsed = pgm_read_byte(&motorElapsed[entry]);
+  const Masked masked;
+  const uint8_t before = motion.mode;
+  const uint32_t here = motorPosition();
+  motion.target = mode & kReverse ? here - limit : here + limit;
+  motion.rest = rest;
+  motion.restHigh = rest >> 16;
+  GPIOR1 = 1;
+  motion.run = mode & kThink ? 1 : 255;
+  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endLaps = laps;
+  motion.next = setting;
+  motion.elapsed = elapsed;
+  motion.status = MOTOR_STAT_SPIN_FIXED;
+  motion.mode = mode;
+  if ((before ^ mode) & kReverse) {
+    GPIOR0 += mode & kReverse ? 2 : -2;
+  }
+  if (before & kRunning) {
+    motorTakeOver();
+  } else {
+    motorStopTimer();
+    motorEnergise();
+    motorRunTimer(0);
+    TIMSK3 = _BV(TOIE3);
   }
   return 0;
 }
 
 uint8_t motorReadStatus() {
-  uint8_t status = 0;
-  {
-    const Masked masked;
-    status = motorStatus;
-    // A millisecond limit ends on time, though the next step may be far away.
-    const bool limited = (motorMode & (kThink | kCoast)) == kThink;
-    if (limited && motorMillisOver()) {
-      status |= MOTOR_STAT_REACHED;
-    }
-  }
+  const Masked masked;
+  uint8_t status = motorMotion.status;
+  // A millisecond limit ends on time, though the next step may be far away.
+  const bool limited = (motorMotion.mode & (kThink | kCoast)) == kThink;
+  if (limited && motorMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -386,26 +412,21 @@ int32_t motorReadPosition() {
 }
 
 // Switches the coils on or off, unless the motor runs.
-static int8_t motorSetCoils(bool on) {
-  int8_t result = 0;
-  {
-    const Masked masked;
-    if (motorMode & kRunning) {
-      motorStatus |= MOTOR_STAT_FAULT;
-      result = MOTOR_ERROR_RUNNING;
-    } else {
-      motorStopTimer();
-      motorMode &= kReverse;
-      if (on) {
-        motorShow();
-        PORTB |= 0x20;  // PWM B
-        PORTE |= 0x20;  // PWM A
-      } else {
-        motorCoilsOff();
-      }
-    }
+SHARED int8_t motorSetCoils(bool on) {
+  const Masked masked;
+  auto &motion = near(motorMotion);
+  if (motion.mode & kRunning) {
+    motion.status |= MOTOR_STAT_FAULT;
+    return MOTOR_ERROR_RUNNING;
   }
-  return result;
+  motorStopTimer();
+  motion.mode &= kReverse;
+  if (on) {
+    motorEnergise();
+  } else {
+    motorCoilsOff();
+  }
+  return 0;
 }
 
 int8_t motorHold() { return motorSetCoils(true); }

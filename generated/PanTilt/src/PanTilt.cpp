@@ -8,18 +8,29 @@
 
 // The step interrupt calls nothing, so what it uses must not become a call.
 #define INLINE static inline __attribute__((always_inline))
+// What several callers use exists once, though the compiler would rather copy it.
+#define SHARED static __attribute__((noinline))
 
 // Interrupts are off as long as one of these lives. All that was written by then is in RAM before
 // they come on again: the compiler must not move it past that moment.
 struct Masked {
   const uint8_t sreg;
-  Masked() : sreg(SREG) { cli(); }
-  ~Masked() {
+  __attribute__((always_inline)) Masked() : sreg(SREG) { cli(); }
+  __attribute__((always_inline)) ~Masked() {
     asm volatile("" ::: "memory");
     SREG = sreg;
     asm volatile("" ::: "memory");
   }
 };
+
+// The same object by a pointer whose value the compiler does not know: members are then two bytes
+// of code away, where an absolute address takes four.
+template <typename T>
+INLINE T &near(T &object) {
+  T *pointer = &object;
+  asm("" : "+b"(pointer));
+  return *pointer;
+}
 
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
@@ -43,26 +54,37 @@ constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
 
-// A timer's TOP and clock select bits, and how many ticks ago its period began when a step
-// interrupt sets it to work.
+// A timer's TOP and clock select bits; 0 selects no clock.
 struct Setting {
   uint16_t top;
   uint8_t select;
-  uint8_t elapsed;
 };
 
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
-static Setting chooseSetting(uint32_t period, uint8_t elapsed) {
+SHARED Setting chooseSetting(uint32_t period) {
   uint8_t select = 1;
-  while (period > 65535) {
-    const uint8_t shift = select < 3 ? 3 : 2;
-    period >>= shift;
-    elapsed >>= shift;
+  while (period >> 16) {
+    period >>= 2;
+    if (select < 3) period >>= 1;
     ++select;
   }
-  return {static_cast<uint16_t>(period - 1), select, elapsed};
+  return {static_cast<uint16_t>(period - 1), select};
 }
+
+// What is kept of a motion at constant speed.
+struct ConstantMotion {
+  uint8_t mode;  // kRunning, kReverse and so on
+  uint8_t status;  // MOTOR_STAT_...
+  uint8_t run;  // steps counted down at a time: 255, or 1 to think before each
+  uint16_t rest;  // steps to make after those that are counted down
+  uint16_t restHigh;  // and their upper half
+  uint32_t target;  // the position when all of them are made
+  uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
+  __uint24 endLaps;  // after so many more laps of 32768 ms
+  Setting next;  // the next step sets the timer to this, unless its select is 0,
+  uint16_t elapsed;  // which takes so many ticks
+};
 
 // Returns why a call of a speed function must be refused, or 0.
 static int8_t checkSpeed(uint32_t period) {
@@ -71,7 +93,7 @@ static int8_t checkSpeed(uint32_t period) {
   return 0;
 }
 
-uint32_t motorTimerGetIOclocksPerSecond() {
+__attribute__((noinline)) uint32_t motorTimerGetIOclocksPerSecond() {
   return F_CPU >> (CLKPR & 0x0F);  // CLKPS: the divider is a power of two
 }
 
@@ -103,30 +125,7 @@ static const uint8_t panRing[] PROGMEM __attribute__((aligned(32))) = {
      26, 0x09,  // back from 7
 };
 
-static uint8_t panMode;  // kRunning, kReverse and so on
-static uint8_t panStatus;  // MOTOR_STAT_...
-// Steps counted down at a time: 255, or 1 to think before each.
-static uint8_t panRun;
-// Steps to make after those that are counted down in GPIOR1, and their upper half.
-static uint16_t panRest;
-static uint16_t panRestHigh;
-// The position when all of them are made.
-static uint32_t panTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
-static uint16_t panEndMillis;
-static __uint24 panEndLaps;
-// The next step sets the timer to this, unless its select is 0.
-static Setting panNext;
-
-// Where the motor is: the target less what is left to do. Only while interrupts are off.
-static uint32_t panPosition() {
-  const uint32_t rest =
-      static_cast<uint32_t>(panRestHigh) << 16 | panRest;
-  const uint32_t left = rest + GPIOR1;
-  return panMode & kReverse
-      ? panTarget + left
-      : panTarget - left;
-}
+static ConstantMotion panMotion;
 
 // Writes the pattern of the present phase. Only while interrupts are off.
 INLINE void panShow() {
@@ -145,6 +144,31 @@ INLINE void panCoilsOff() {
   PORTK &= 0xF0;  // coil A, coil B, coil C, coil D
 }
 
+// Steps that are left to do. Only while interrupts are off.
+INLINE uint32_t panLeft() {
+  auto &motion = near(panMotion);
+  return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + GPIOR1;
+}
+
+// Where the motor is: the target less what is left to do. Only while interrupts are off.
+SHARED uint32_t panPosition() {
+  auto &motion = near(panMotion);
+  const uint32_t left = panLeft();
+  return motion.target + (motion.mode & kReverse ? left : -left);
+}
+
+// Lets the current of the present phase flow. Only while interrupts are off.
+SHARED void panEnergise() {
+  panShow();
+}
+
+// Ticks since the step was due when the interrupt has set the timer anew, for each clock select
+// from 1 on; then the same when it made the step itself.
+static const uint8_t panElapsed[] PROGMEM = {
+    122, 15, 1, 0, 0,
+    132, 16, 2, 0, 0,
+};
+
 // Stops the timer; no step comes after this. Only while interrupts are off.
 INLINE void panStopTimer() {
   TCCR4B = 0;
@@ -155,14 +179,25 @@ INLINE void panStopTimer() {
 // Sets a stopped or running timer to work. OCR4A is written twice: without WGM41
 // and WGM40 (mode 12) it goes straight to the comparator, with them (mode 15) into the
 // buffer from which each period takes it.
-INLINE void panRunTimer(Setting setting) {
+INLINE void panRunTimer(uint8_t elapsed) {
+  Setting &next = panMotion.next;
   TCCR4B = _BV(WGM43) | _BV(WGM42);
   TCCR4A = 0;
-  OCR4A = setting.top;
-  TCNT4 = setting.elapsed;
+  OCR4A = next.top;
+  TCNT4 = elapsed;
   TCCR4A = _BV(WGM41) | _BV(WGM40);
-  OCR4A = setting.top;
-  TCCR4B = _BV(WGM43) | _BV(WGM42) | setting.select;
+  OCR4A = next.top;
+  TCCR4B = _BV(WGM43) | _BV(WGM42) | next.select;
+  next.select = 0;
+}
+
+// Leaves the setting to the timer, which takes it over when the interval in progress ends, if the
+// prescaler stays and that end is not due already. Otherwise the next step sets the timer.
+INLINE void panTakeOver() {
+  Setting &next = panMotion.next;
+  if ((TCCR4B & 7) != next.select) return;
+  OCR4A = next.top;
+  if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
 // Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 210 when it
@@ -226,26 +261,33 @@ ISR(TIMER4_OVF_vect, ISR_NAKED) {
         [scratch] "I"(_SFR_IO_ADDR(GPIOR2)),
         [count] "I"(_SFR_IO_ADDR(GPIOR1)),
         [state] "I"(_SFR_IO_ADDR(GPIOR0)),
-        [mode] "i"(&panMode),
+        [mode] "i"(&panMotion.mode),
         [think] "I"(0),
         [ring] "i"(panRing),
         [port0] "n"(_SFR_MEM_ADDR(PORTK))
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped.
+// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
 INLINE void panReached(uint8_t mode) {
-  panMode = (panMode & kReverse) | mode;
-  panStatus = (panStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+  auto &motion = panMotion;
+  motion.mode = (motion.mode & kReverse) | mode;
+  motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+}
+
+INLINE void panHalt(uint8_t mode) {
+  panStopTimer();
+  panReached(mode);
 }
 
 // Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
 // before each step. Only while interrupts are off.
 INLINE bool panMillisOver() {
-  if (static_cast<int16_t>(millisCount() - panEndMillis) < 0) return false;
-  if (panEndLaps == 0) return true;
-  --panEndLaps;
-  panEndMillis += 0x8000;
+  auto &motion = panMotion;
+  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
+  if (motion.endLaps == 0) return true;
+  --motion.endLaps;
+  motion.endMillis += 0x8000;
   return false;
 }
 
@@ -254,133 +296,118 @@ INLINE bool panMillisOver() {
 // millisecond limit runs.
 extern "C" void __vector_pan_boundary() __attribute__((signal, used, externally_visible));
 void __vector_pan_boundary() {
-  const uint8_t mode = panMode;
+  auto &motion = panMotion;
+  const uint8_t mode = motion.mode;
   if (mode & kThink) {
     if ((mode & kCoast) || panMillisOver()) {
       GPIOR1 = 1;  // there was no step
-      panStopTimer();
       panCoilsOff();
-      panReached(0);
+      panHalt(0);
       return;
     }
     panStep();
   }
-  if (panNext.select) {
-    panRunTimer(panNext);
-    panNext.select = 0;
-  }
-  const uint16_t rest = panRest;
-  uint8_t run = panRun;
+  if (motion.next.select) panRunTimer(motion.elapsed);
+  const uint16_t rest = motion.rest;
+  uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || panRestHigh) {
-      --panRestHigh;
+    if ((mode & kEndless) || motion.restHigh) {
+      --motion.restHigh;
     } else if (rest) {
       run = rest;
     } else {
       // The rotor is still on its way: the coils go off one interval after the last step.
       panReached(kThink | kCoast);
-      panRest = panRestHigh = -1;
+      motion.rest = motion.restHigh = -1;
       GPIOR1 = 1;
       return;
     }
   }
-  panRest = rest - run;
+  motion.rest = rest - run;
   GPIOR1 = run;
 }
 
 void panShieldInit() {
-  {
-    const Masked masked;
-    panStopTimer();
-    panMode = 0;
-    panStatus = 0;
-    panRest = 0;
-    panRestHigh = 0;
-    panTarget = 0;
-    GPIOR1 = 0;
-    GPIOR0 = 0;  // phase 0, going forward
-    PORTK &= 0xF0;  // coil A, coil B, coil C, coil D
-    DDRK |= 0x0F;  // coil A, coil B, coil C, coil D
-  }
+  const Masked masked;
+  panStopTimer();
+  auto &motion = near(panMotion);
+  motion.mode = 0;
+  motion.status = 0;
+  motion.rest = 0;
+  motion.target = 0;
+  motion.restHigh = 0;
+  GPIOR1 = 0;
+  GPIOR0 = 0;  // phase 0, going forward
+  PORTK &= 0xF0;  // coil A, coil B, coil C, coil D
+  DDRK |= 0x0F;  // coil A, coil B, coil C, coil D
 }
 
 int8_t panSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    {
-      const Masked masked;
-      panStopTimer();
-      panCoilsOff();
-      panReached(0);
-    }
+    const Masked masked;
+    panCoilsOff();
+    panHalt(0);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
+  auto &motion = near(panMotion);
   if (error) {
     const Masked masked;
-    panStatus |= error == MOTOR_ERROR_CONTROL
+    motion.status |= error == MOTOR_ERROR_CONTROL
         ? MOTOR_STAT_FAULT
         : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
-  const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
-  const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
-  const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
-  const uint32_t rest = steps - 1;
-  // Cycles from the due step until the interrupt has set the timer anew.
-  const uint8_t elapsed = millisLimit ? 132 : 122;
-  const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  {
-    const Masked masked;
-    const uint8_t before = panMode;
-    const uint32_t here = panPosition();
-    if ((before & kReverse) != reverse) {
-      GPIOR0 += reverse ? 2 : -2;
-    }
-    panTarget = reverse ? here - steps : here + steps;
-    panRest = rest;
-    panRestHigh = rest >> 16;
-    GPIOR1 = 1;
-    panEndMillis = millisCount() + (limit & 0x7FFF);
-    panEndLaps = laps;
-    panStatus = MOTOR_STAT_SPIN_FIXED;
-    uint8_t mode = reverse | kRunning;
-    if (millisLimit) mode |= kThink;
-    panRun = millisLimit ? 1 : 255;
-    if (steps == 0) mode |= kEndless;
-    panMode = mode;
-    if (before & kRunning) {
-      panNext = setting;
-      if ((TCCR4B & 7) == setting.select) {
-        OCR4A = setting.top;  // the timer takes it over when the interval in progress ends
-        if (!(TIFR4 & _BV(TOV4))) panNext.select = 0;  // not due already
-      }
-    } else {
-      panStopTimer();
-      panShow();
-      panNext.select = 0;
-      Setting now = setting;
-      now.elapsed = 0;
-      panRunTimer(now);
-      TIMSK4 = _BV(TOIE4);
-    }
+  uint8_t mode = kRunning;
+  if (control & MOTOR_CTRL_DIRECTION) mode |= kReverse;
+  uint32_t millis = 0;
+  if (control & MOTOR_CTRL_ENDPOINT_MILLIS) {
+    millis = limit;
+    limit = 0;
+    if (millis) mode |= kThink;
+  }
+  if (limit == 0) mode |= kEndless;
+  const __uint24 laps = millis >> 15;
+  const uint32_t rest = limit - 1;
+  const Setting setting = chooseSetting(timerTop32virtual);
+  const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
+  const uint16_t elapsed = pgm_read_byte(&panElapsed[entry]);
+  const Masked masked;
+  const uint8_t before = motion.mode;
+  const uint32_t here = panPosition();
+  motion.target = mode & kReverse ? here - limit : here + limit;
+  motion.rest = rest;
+  motion.restHigh = rest >> 16;
+  GPIOR1 = 1;
+  motion.run = mode & kThink ? 1 : 255;
+  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endLaps = laps;
+  motion.next = setting;
+  motion.elapsed = elapsed;
+  motion.status = MOTOR_STAT_SPIN_FIXED;
+  motion.mode = mode;
+  if ((before ^ mode) & kReverse) {
+    GPIOR0 += mode & kReverse ? 2 : -2;
+  }
+  if (before & kRunning) {
+    panTakeOver();
+  } else {
+    panStopTimer();
+    panEnergise();
+    panRunTimer(0);
+    TIMSK4 = _BV(TOIE4);
   }
   return 0;
 }
 
 uint8_t panReadStatus() {
-  uint8_t status = 0;
-  {
-    const Masked masked;
-    status = panStatus;
-    // A millisecond limit ends on time, though the next step may be far away.
-    const bool limited = (panMode & (kThink | kCoast)) == kThink;
-    if (limited && panMillisOver()) {
-      status |= MOTOR_STAT_REACHED;
-    }
-  }
+  const Masked masked;
+  uint8_t status = panMotion.status;
+  // A millisecond limit ends on time, though the next step may be far away.
+  const bool limited = (panMotion.mode & (kThink | kCoast)) == kThink;
+  if (limited && panMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -390,24 +417,21 @@ int32_t panReadPosition() {
 }
 
 // Switches the coils on or off, unless the motor runs.
-static int8_t panSetCoils(bool on) {
-  int8_t result = 0;
-  {
-    const Masked masked;
-    if (panMode & kRunning) {
-      panStatus |= MOTOR_STAT_FAULT;
-      result = MOTOR_ERROR_RUNNING;
-    } else {
-      panStopTimer();
-      panMode &= kReverse;
-      if (on) {
-        panShow();
-      } else {
-        panCoilsOff();
-      }
-    }
+SHARED int8_t panSetCoils(bool on) {
+  const Masked masked;
+  auto &motion = near(panMotion);
+  if (motion.mode & kRunning) {
+    motion.status |= MOTOR_STAT_FAULT;
+    return MOTOR_ERROR_RUNNING;
   }
-  return result;
+  panStopTimer();
+  motion.mode &= kReverse;
+  if (on) {
+    panEnergise();
+  } else {
+    panCoilsOff();
+  }
+  return 0;
 }
 
 int8_t panHold() { return panSetCoils(true); }
@@ -430,32 +454,9 @@ static const uint8_t tiltRing[] PROGMEM __attribute__((aligned(16))) = {
      10, 0x80,  // back from 3
 };
 
-static uint8_t tiltMode;  // kRunning, kReverse and so on
-static uint8_t tiltStatus;  // MOTOR_STAT_...
-// Steps counted down at a time: 255, or 1 to think before each.
-static uint8_t tiltRun;
-// Steps to make after those that are counted down in tiltCount, and their upper half.
-static uint16_t tiltRest;
-static uint16_t tiltRestHigh;
-// The position when all of them are made.
-static uint32_t tiltTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
-static uint16_t tiltEndMillis;
-static __uint24 tiltEndLaps;
-// The next step sets the timer to this, unless its select is 0.
-static Setting tiltNext;
+static ConstantMotion tiltMotion;
 static uint8_t tiltCount;  // step interrupts until the next boundary
 static uint8_t tiltState;  // the row of the present phase
-
-// Where the motor is: the target less what is left to do. Only while interrupts are off.
-static uint32_t tiltPosition() {
-  const uint32_t rest =
-      static_cast<uint32_t>(tiltRestHigh) << 16 | tiltRest;
-  const uint32_t left = rest + tiltCount;
-  return tiltMode & kReverse
-      ? tiltTarget + left
-      : tiltTarget - left;
-}
 
 // Writes the pattern of the present phase. Only while interrupts are off.
 INLINE void tiltShow() {
@@ -475,6 +476,33 @@ INLINE void tiltCoilsOff() {
   PORTE &= 0xDF;  // PWM A
 }
 
+// Steps that are left to do. Only while interrupts are off.
+INLINE uint32_t tiltLeft() {
+  auto &motion = near(tiltMotion);
+  return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + tiltCount;
+}
+
+// Where the motor is: the target less what is left to do. Only while interrupts are off.
+SHARED uint32_t tiltPosition() {
+  auto &motion = near(tiltMotion);
+  const uint32_t left = tiltLeft();
+  return motion.target + (motion.mode & kReverse ? left : -left);
+}
+
+// Lets the current of the present phase flow. Only while interrupts are off.
+SHARED void tiltEnergise() {
+  tiltShow();
+  PORTB |= 0x20;  // PWM B
+  PORTE |= 0x20;  // PWM A
+}
+
+// Ticks since the step was due when the interrupt has set the timer anew, for each clock select
+// from 1 on; then the same when it made the step itself.
+static const uint8_t tiltElapsed[] PROGMEM = {
+    124, 15, 1, 0, 0,
+    134, 16, 2, 0, 0,
+};
+
 // Stops the timer; no step comes after this. Only while interrupts are off.
 INLINE void tiltStopTimer() {
   TCCR3B = 0;
@@ -485,14 +513,25 @@ INLINE void tiltStopTimer() {
 // Sets a stopped or running timer to work. OCR3A is written twice: without WGM31
 // and WGM30 (mode 12) it goes straight to the comparator, with them (mode 15) into the
 // buffer from which each period takes it.
-INLINE void tiltRunTimer(Setting setting) {
+INLINE void tiltRunTimer(uint8_t elapsed) {
+  Setting &next = tiltMotion.next;
   TCCR3B = _BV(WGM33) | _BV(WGM32);
   TCCR3A = 0;
-  OCR3A = setting.top;
-  TCNT3 = setting.elapsed;
+  OCR3A = next.top;
+  TCNT3 = elapsed;
   TCCR3A = _BV(WGM31) | _BV(WGM30);
-  OCR3A = setting.top;
-  TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
+  OCR3A = next.top;
+  TCCR3B = _BV(WGM33) | _BV(WGM32) | next.select;
+  next.select = 0;
+}
+
+// Leaves the setting to the timer, which takes it over when the interval in progress ends, if the
+// prescaler stays and that end is not due already. Otherwise the next step sets the timer.
+INLINE void tiltTakeOver() {
+  Setting &next = tiltMotion.next;
+  if ((TCCR3B & 7) != next.select) return;
+  OCR3A = next.top;
+  if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
 // Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 212 when it
@@ -556,26 +595,33 @@ ISR(TIMER3_OVF_vect, ISR_NAKED) {
         [scratch] "I"(_SFR_IO_ADDR(GPIOR2)),
         [count] "i"(&tiltCount),
         [state] "i"(&tiltState),
-        [mode] "i"(&tiltMode),
+        [mode] "i"(&tiltMotion.mode),
         [think] "I"(0),
         [ring] "i"(tiltRing),
         [port0] "I"(_SFR_IO_ADDR(PORTB))
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped.
+// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
 INLINE void tiltReached(uint8_t mode) {
-  tiltMode = (tiltMode & kReverse) | mode;
-  tiltStatus = (tiltStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+  auto &motion = tiltMotion;
+  motion.mode = (motion.mode & kReverse) | mode;
+  motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+}
+
+INLINE void tiltHalt(uint8_t mode) {
+  tiltStopTimer();
+  tiltReached(mode);
 }
 
 // Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
 // before each step. Only while interrupts are off.
 INLINE bool tiltMillisOver() {
-  if (static_cast<int16_t>(millisCount() - tiltEndMillis) < 0) return false;
-  if (tiltEndLaps == 0) return true;
-  --tiltEndLaps;
-  tiltEndMillis += 0x8000;
+  auto &motion = tiltMotion;
+  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
+  if (motion.endLaps == 0) return true;
+  --motion.endLaps;
+  motion.endMillis += 0x8000;
   return false;
 }
 
@@ -584,136 +630,118 @@ INLINE bool tiltMillisOver() {
 // millisecond limit runs.
 extern "C" void __vector_tilt_boundary() __attribute__((signal, used, externally_visible));
 void __vector_tilt_boundary() {
-  const uint8_t mode = tiltMode;
+  auto &motion = tiltMotion;
+  const uint8_t mode = motion.mode;
   if (mode & kThink) {
     if ((mode & kCoast) || tiltMillisOver()) {
       tiltCount = 1;  // there was no step
-      tiltStopTimer();
-      tiltReached(0);
+      tiltHalt(0);
       return;
     }
     tiltStep();
   }
-  if (tiltNext.select) {
-    tiltRunTimer(tiltNext);
-    tiltNext.select = 0;
-  }
-  const uint16_t rest = tiltRest;
-  uint8_t run = tiltRun;
+  if (motion.next.select) tiltRunTimer(motion.elapsed);
+  const uint16_t rest = motion.rest;
+  uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || tiltRestHigh) {
-      --tiltRestHigh;
+    if ((mode & kEndless) || motion.restHigh) {
+      --motion.restHigh;
     } else if (rest) {
       run = rest;
     } else {
-      tiltStopTimer();
-      tiltReached(0);
+      tiltHalt(0);
       return;
     }
   }
-  tiltRest = rest - run;
+  motion.rest = rest - run;
   tiltCount = run;
 }
 
 void tiltShieldInit() {
-  {
-    const Masked masked;
-    tiltStopTimer();
-    tiltMode = 0;
-    tiltStatus = 0;
-    tiltRest = 0;
-    tiltRestHigh = 0;
-    tiltTarget = 0;
-    tiltCount = 0;
-    tiltState = 0;  // phase 0, going forward
-    PORTB &= 0x1F;  // DIR A, DIR B, PWM B
-    PORTE &= 0xDF;  // PWM A
-    PORTH &= 0x9F;  // BRAKE A, BRAKE B
-    DDRB |= 0xE0;  // DIR A, DIR B, PWM B
-    DDRE |= 0x20;  // PWM A
-    DDRH |= 0x60;  // BRAKE A, BRAKE B
-  }
+  const Masked masked;
+  tiltStopTimer();
+  auto &motion = near(tiltMotion);
+  motion.mode = 0;
+  motion.status = 0;
+  motion.rest = 0;
+  motion.target = 0;
+  motion.restHigh = 0;
+  tiltCount = 0;
+  tiltState = 0;  // phase 0, going forward
+  PORTB &= 0x1F;  // DIR A, DIR B, PWM B
+  PORTE &= 0xDF;  // PWM A
+  PORTH &= 0x9F;  // BRAKE A, BRAKE B
+  DDRB |= 0xE0;  // DIR A, DIR B, PWM B
+  DDRE |= 0x20;  // PWM A
+  DDRH |= 0x60;  // BRAKE A, BRAKE B
 }
 
 int8_t tiltSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    {
-      const Masked masked;
-      tiltStopTimer();
-      if (!(control & MOTOR_CTRL_DRV_EN)) tiltCoilsOff();
-      tiltReached(0);
-    }
+    const Masked masked;
+    if (!(control & MOTOR_CTRL_DRV_EN)) tiltCoilsOff();
+    tiltHalt(0);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
+  auto &motion = near(tiltMotion);
   if (error) {
     const Masked masked;
-    tiltStatus |= error == MOTOR_ERROR_CONTROL
+    motion.status |= error == MOTOR_ERROR_CONTROL
         ? MOTOR_STAT_FAULT
         : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
-  const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
-  const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
-  const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
-  const uint32_t rest = steps - 1;
-  // Cycles from the due step until the interrupt has set the timer anew.
-  const uint8_t elapsed = millisLimit ? 134 : 124;
-  const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  {
-    const Masked masked;
-    const uint8_t before = tiltMode;
-    const uint32_t here = tiltPosition();
-    if ((before & kReverse) != reverse) {
-      tiltState += reverse ? 2 : -2;
-    }
-    tiltTarget = reverse ? here - steps : here + steps;
-    tiltRest = rest;
-    tiltRestHigh = rest >> 16;
-    tiltCount = 1;
-    tiltEndMillis = millisCount() + (limit & 0x7FFF);
-    tiltEndLaps = laps;
-    tiltStatus = MOTOR_STAT_SPIN_FIXED;
-    uint8_t mode = reverse | kRunning;
-    if (millisLimit) mode |= kThink;
-    tiltRun = millisLimit ? 1 : 255;
-    if (steps == 0) mode |= kEndless;
-    tiltMode = mode;
-    if (before & kRunning) {
-      tiltNext = setting;
-      if ((TCCR3B & 7) == setting.select) {
-        OCR3A = setting.top;  // the timer takes it over when the interval in progress ends
-        if (!(TIFR3 & _BV(TOV3))) tiltNext.select = 0;  // not due already
-      }
-    } else {
-      tiltStopTimer();
-      tiltShow();
-      PORTB |= 0x20;  // PWM B
-      PORTE |= 0x20;  // PWM A
-      tiltNext.select = 0;
-      Setting now = setting;
-      now.elapsed = 0;
-      tiltRunTimer(now);
-      TIMSK3 = _BV(TOIE3);
-    }
+  uint8_t mode = kRunning;
+  if (control & MOTOR_CTRL_DIRECTION) mode |= kReverse;
+  uint32_t millis = 0;
+  if (control & MOTOR_CTRL_ENDPOINT_MILLIS) {
+    millis = limit;
+    limit = 0;
+    if (millis) mode |= kThink;
+  }
+  if (limit == 0) mode |= kEndless;
+  const __uint24 laps = millis >> 15;
+  const uint32_t rest = limit - 1;
+  const Setting setting = chooseSetting(timerTop32virtual);
+  const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
+  const uint16_t elapsed = pgm_read_byte(&tiltElapsed[entry]);
+  const Masked masked;
+  const uint8_t before = motion.mode;
+  const uint32_t here = tiltPosition();
+  motion.target = mode & kReverse ? here - limit : here + limit;
+  motion.rest = rest;
+  motion.restHigh = rest >> 16;
+  tiltCount = 1;
+  motion.run = mode & kThink ? 1 : 255;
+  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endLaps = laps;
+  motion.next = setting;
+  motion.elapsed = elapsed;
+  motion.status = MOTOR_STAT_SPIN_FIXED;
+  motion.mode = mode;
+  if ((before ^ mode) & kReverse) {
+    tiltState += mode & kReverse ? 2 : -2;
+  }
+  if (before & kRunning) {
+    tiltTakeOver();
+  } else {
+    tiltStopTimer();
+    tiltEnergise();
+    tiltRunTimer(0);
+    TIMSK3 = _BV(TOIE3);
   }
   return 0;
 }
 
 uint8_t tiltReadStatus() {
-  uint8_t status = 0;
-  {
-    const Masked masked;
-    status = tiltStatus;
-    // A millisecond limit ends on time, though the next step may be far away.
-    const bool limited = (tiltMode & (kThink | kCoast)) == kThink;
-    if (limited && tiltMillisOver()) {
-      status |= MOTOR_STAT_REACHED;
-    }
-  }
+  const Masked masked;
+  uint8_t status = tiltMotion.status;
+  // A millisecond limit ends on time, though the next step may be far away.
+  const bool limited = (tiltMotion.mode & (kThink | kCoast)) == kThink;
+  if (limited && tiltMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -723,26 +751,21 @@ int32_t tiltReadPosition() {
 }
 
 // Switches the coils on or off, unless the motor runs.
-static int8_t tiltSetCoils(bool on) {
-  int8_t result = 0;
-  {
-    const Masked masked;
-    if (tiltMode & kRunning) {
-      tiltStatus |= MOTOR_STAT_FAULT;
-      result = MOTOR_ERROR_RUNNING;
-    } else {
-      tiltStopTimer();
-      tiltMode &= kReverse;
-      if (on) {
-        tiltShow();
-        PORTB |= 0x20;  // PWM B
-        PORTE |= 0x20;  // PWM A
-      } else {
-        tiltCoilsOff();
-      }
-    }
+SHARED int8_t tiltSetCoils(bool on) {
+  const Masked masked;
+  auto &motion = near(tiltMotion);
+  if (motion.mode & kRunning) {
+    motion.status |= MOTOR_STAT_FAULT;
+    return MOTOR_ERROR_RUNNING;
   }
-  return result;
+  tiltStopTimer();
+  motion.mode &= kReverse;
+  if (on) {
+    tiltEnergise();
+  } else {
+    tiltCoilsOff();
+  }
+  return 0;
 }
 
 int8_t tiltHold() { return tiltSetCoils(true); }

@@ -8,18 +8,29 @@
 
 // The step interrupt calls nothing, so what it uses must not become a call.
 #define INLINE static inline __attribute__((always_inline))
+// What several callers use exists once, though the compiler would rather copy it.
+#define SHARED static __attribute__((noinline))
 
 // Interrupts are off as long as one of these lives. All that was written by then is in RAM before
 // they come on again: the compiler must not move it past that moment.
 struct Masked {
   const uint8_t sreg;
-  Masked() : sreg(SREG) { cli(); }
-  ~Masked() {
+  __attribute__((always_inline)) Masked() : sreg(SREG) { cli(); }
+  __attribute__((always_inline)) ~Masked() {
     asm volatile("" ::: "memory");
     SREG = sreg;
     asm volatile("" ::: "memory");
   }
 };
+
+// The same object by a pointer whose value the compiler does not know: members are then two bytes
+// of code away, where an absolute address takes four.
+template <typename T>
+INLINE T &near(T &object) {
+  T *pointer = &object;
+  asm("" : "+b"(pointer));
+  return *pointer;
+}
 
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
@@ -43,26 +54,37 @@ constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
 
-// A timer's TOP and clock select bits, and how many ticks ago its period began when a step
-// interrupt sets it to work.
+// A timer's TOP and clock select bits; 0 selects no clock.
 struct Setting {
   uint16_t top;
   uint8_t select;
-  uint8_t elapsed;
 };
 
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
-static Setting chooseSetting(uint32_t period, uint8_t elapsed) {
+SHARED Setting chooseSetting(uint32_t period) {
   uint8_t select = 1;
-  while (period > 65535) {
-    const uint8_t shift = select < 3 ? 3 : 2;
-    period >>= shift;
-    elapsed >>= shift;
+  while (period >> 16) {
+    period >>= 2;
+    if (select < 3) period >>= 1;
     ++select;
   }
-  return {static_cast<uint16_t>(period - 1), select, elapsed};
+  return {static_cast<uint16_t>(period - 1), select};
 }
+
+// What is kept of a motion at constant speed.
+struct ConstantMotion {
+  uint8_t mode;  // kRunning, kReverse and so on
+  uint8_t status;  // MOTOR_STAT_...
+  uint8_t run;  // steps counted down at a time: 255, or 1 to think before each
+  uint16_t rest;  // steps to make after those that are counted down
+  uint16_t restHigh;  // and their upper half
+  uint32_t target;  // the position when all of them are made
+  uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
+  __uint24 endLaps;  // after so many more laps of 32768 ms
+  Setting next;  // the next step sets the timer to this, unless its select is 0,
+  uint16_t elapsed;  // which takes so many ticks
+};
 
 // Returns why a call of a speed function must be refused, or 0.
 static int8_t checkSpeed(uint32_t period) {
@@ -71,7 +93,7 @@ static int8_t checkSpeed(uint32_t period) {
   return 0;
 }
 
-uint32_t motorTimerGetIOclocksPerSecond() {
+__attribute__((noinline)) uint32_t motorTimerGetIOclocksPerSecond() {
   return F_CPU >> (CLKPR & 0x0F);  // CLKPS: the divider is a power of two
 }
 
@@ -95,30 +117,7 @@ static const uint8_t lowerRing[] PROGMEM __attribute__((aligned(16))) = {
      10, 0x80,  // back from 3
 };
 
-static uint8_t lowerMode;  // kRunning, kReverse and so on
-static uint8_t lowerStatus;  // MOTOR_STAT_...
-// Steps counted down at a time: 255, or 1 to think before each.
-static uint8_t lowerRun;
-// Steps to make after those that are counted down in GPIOR1, and their upper half.
-static uint16_t lowerRest;
-static uint16_t lowerRestHigh;
-// The position when all of them are made.
-static uint32_t lowerTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
-static uint16_t lowerEndMillis;
-static __uint24 lowerEndLaps;
-// The next step sets the timer to this, unless its select is 0.
-static Setting lowerNext;
-
-// Where the motor is: the target less what is left to do. Only while interrupts are off.
-static uint32_t lowerPosition() {
-  const uint32_t rest =
-      static_cast<uint32_t>(lowerRestHigh) << 16 | lowerRest;
-  const uint32_t left = rest + GPIOR1;
-  return lowerMode & kReverse
-      ? lowerTarget + left
-      : lowerTarget - left;
-}
+static ConstantMotion lowerMotion;
 
 // Writes the pattern of the present phase. Only while interrupts are off.
 INLINE void lowerShow() {
@@ -138,6 +137,33 @@ INLINE void lowerCoilsOff() {
   PORTE &= 0xDF;  // PWM A
 }
 
+// Steps that are left to do. Only while interrupts are off.
+INLINE uint32_t lowerLeft() {
+  auto &motion = near(lowerMotion);
+  return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + GPIOR1;
+}
+
+// Where the motor is: the target less what is left to do. Only while interrupts are off.
+SHARED uint32_t lowerPosition() {
+  auto &motion = near(lowerMotion);
+  const uint32_t left = lowerLeft();
+  return motion.target + (motion.mode & kReverse ? left : -left);
+}
+
+// Lets the current of the present phase flow. Only while interrupts are off.
+SHARED void lowerEnergise() {
+  lowerShow();
+  PORTB |= 0x20;  // PWM B
+  PORTE |= 0x20;  // PWM A
+}
+
+// Ticks since the step was due when the interrupt has set the timer anew, for each clock select
+// from 1 on; then the same when it made the step itself.
+static const uint8_t lowerElapsed[] PROGMEM = {
+    120, 15, 1, 0, 0,
+    132, 16, 2, 0, 0,
+};
+
 // Stops the timer; no step comes after this. Only while interrupts are off.
 INLINE void lowerStopTimer() {
   TCCR1B = 0;
@@ -148,14 +174,25 @@ INLINE void lowerStopTimer() {
 // Sets a stopped or running timer to work. OCR1A is written twice: without WGM11
 // and WGM10 (mode 12) it goes straight to the comparator, with them (mode 15) into the
 // buffer from which each period takes it.
-INLINE void lowerRunTimer(Setting setting) {
+INLINE void lowerRunTimer(uint8_t elapsed) {
+  Setting &next = lowerMotion.next;
   TCCR1B = _BV(WGM13) | _BV(WGM12);
   TCCR1A = 0;
-  OCR1A = setting.top;
-  TCNT1 = setting.elapsed;
+  OCR1A = next.top;
+  TCNT1 = elapsed;
   TCCR1A = _BV(WGM11) | _BV(WGM10);
-  OCR1A = setting.top;
-  TCCR1B = _BV(WGM13) | _BV(WGM12) | setting.select;
+  OCR1A = next.top;
+  TCCR1B = _BV(WGM13) | _BV(WGM12) | next.select;
+  next.select = 0;
+}
+
+// Leaves the setting to the timer, which takes it over when the interval in progress ends, if the
+// prescaler stays and that end is not due already. Otherwise the next step sets the timer.
+INLINE void lowerTakeOver() {
+  Setting &next = lowerMotion.next;
+  if ((TCCR1B & 7) != next.select) return;
+  OCR1A = next.top;
+  if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
 // Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 208 when it
@@ -219,26 +256,33 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
         [scratch] "I"(_SFR_IO_ADDR(GPIOR2)),
         [count] "I"(_SFR_IO_ADDR(GPIOR1)),
         [state] "I"(_SFR_IO_ADDR(GPIOR0)),
-        [mode] "i"(&lowerMode),
+        [mode] "i"(&lowerMotion.mode),
         [think] "I"(0),
         [ring] "i"(lowerRing),
         [port0] "I"(_SFR_IO_ADDR(PORTB))
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped.
+// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
 INLINE void lowerReached(uint8_t mode) {
-  lowerMode = (lowerMode & kReverse) | mode;
-  lowerStatus = (lowerStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+  auto &motion = lowerMotion;
+  motion.mode = (motion.mode & kReverse) | mode;
+  motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+}
+
+INLINE void lowerHalt(uint8_t mode) {
+  lowerStopTimer();
+  lowerReached(mode);
 }
 
 // Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
 // before each step. Only while interrupts are off.
 INLINE bool lowerMillisOver() {
-  if (static_cast<int16_t>(millisCount() - lowerEndMillis) < 0) return false;
-  if (lowerEndLaps == 0) return true;
-  --lowerEndLaps;
-  lowerEndMillis += 0x8000;
+  auto &motion = lowerMotion;
+  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
+  if (motion.endLaps == 0) return true;
+  --motion.endLaps;
+  motion.endMillis += 0x8000;
   return false;
 }
 
@@ -247,134 +291,116 @@ INLINE bool lowerMillisOver() {
 // millisecond limit runs.
 extern "C" void __vector_lower_boundary() __attribute__((signal, used, externally_visible));
 void __vector_lower_boundary() {
-  const uint8_t mode = lowerMode;
+  auto &motion = lowerMotion;
+  const uint8_t mode = motion.mode;
   if (mode & kThink) {
     if ((mode & kCoast) || lowerMillisOver()) {
       GPIOR1 = 1;  // there was no step
-      lowerStopTimer();
-      lowerReached(0);
+      lowerHalt(0);
       return;
     }
     lowerStep();
   }
-  if (lowerNext.select) {
-    lowerRunTimer(lowerNext);
-    lowerNext.select = 0;
-  }
-  const uint16_t rest = lowerRest;
-  uint8_t run = lowerRun;
+  if (motion.next.select) lowerRunTimer(motion.elapsed);
+  const uint16_t rest = motion.rest;
+  uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || lowerRestHigh) {
-      --lowerRestHigh;
+    if ((mode & kEndless) || motion.restHigh) {
+      --motion.restHigh;
     } else if (rest) {
       run = rest;
     } else {
-      lowerStopTimer();
-      lowerReached(0);
+      lowerHalt(0);
       return;
     }
   }
-  lowerRest = rest - run;
+  motion.rest = rest - run;
   GPIOR1 = run;
 }
 
 void lowerShieldInit() {
-  {
-    const Masked masked;
-    lowerStopTimer();
-    lowerMode = 0;
-    lowerStatus = 0;
-    lowerRest = 0;
-    lowerRestHigh = 0;
-    lowerTarget = 0;
-    GPIOR1 = 0;
-    GPIOR0 = 0;  // phase 0, going forward
-    PORTB &= 0x1F;  // DIR A, DIR B, PWM B
-    PORTE &= 0xDF;  // PWM A
-    DDRB |= 0xE0;  // DIR A, DIR B, PWM B
-    DDRE |= 0x20;  // PWM A
-  }
+  const Masked masked;
+  lowerStopTimer();
+  auto &motion = near(lowerMotion);
+  motion.mode = 0;
+  motion.status = 0;
+  motion.rest = 0;
+  motion.target = 0;
+  motion.restHigh = 0;
+  GPIOR1 = 0;
+  GPIOR0 = 0;  // phase 0, going forward
+  PORTB &= 0x1F;  // DIR A, DIR B, PWM B
+  PORTE &= 0xDF;  // PWM A
+  DDRB |= 0xE0;  // DIR A, DIR B, PWM B
+  DDRE |= 0x20;  // PWM A
 }
 
 int8_t lowerSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    {
-      const Masked masked;
-      lowerStopTimer();
-      if (!(control & MOTOR_CTRL_DRV_EN)) lowerCoilsOff();
-      lowerReached(0);
-    }
+    const Masked masked;
+    if (!(control & MOTOR_CTRL_DRV_EN)) lowerCoilsOff();
+    lowerHalt(0);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
+  auto &motion = near(lowerMotion);
   if (error) {
     const Masked masked;
-    lowerStatus |= error == MOTOR_ERROR_CONTROL
+    motion.status |= error == MOTOR_ERROR_CONTROL
         ? MOTOR_STAT_FAULT
         : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
-  const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
-  const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
-  const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
-  const uint32_t rest = steps - 1;
-  // Cycles from the due step until the interrupt has set the timer anew.
-  const uint8_t elapsed = millisLimit ? 132 : 120;
-  const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  {
-    const Masked masked;
-    const uint8_t before = lowerMode;
-    const uint32_t here = lowerPosition();
-    if ((before & kReverse) != reverse) {
-      GPIOR0 += reverse ? 2 : -2;
-    }
-    lowerTarget = reverse ? here - steps : here + steps;
-    lowerRest = rest;
-    lowerRestHigh = rest >> 16;
-    GPIOR1 = 1;
-    lowerEndMillis = millisCount() + (limit & 0x7FFF);
-    lowerEndLaps = laps;
-    lowerStatus = MOTOR_STAT_SPIN_FIXED;
-    uint8_t mode = reverse | kRunning;
-    if (millisLimit) mode |= kThink;
-    lowerRun = millisLimit ? 1 : 255;
-    if (steps == 0) mode |= kEndless;
-    lowerMode = mode;
-    if (before & kRunning) {
-      lowerNext = setting;
-      if ((TCCR1B & 7) == setting.select) {
-        OCR1A = setting.top;  // the timer takes it over when the interval in progress ends
-        if (!(TIFR1 & _BV(TOV1))) lowerNext.select = 0;  // not due already
-      }
-    } else {
-      lowerStopTimer();
-      lowerShow();
-      PORTB |= 0x20;  // PWM B
-      PORTE |= 0x20;  // PWM A
-      lowerNext.select = 0;
-      Setting now = setting;
-      now.elapsed = 0;
-      lowerRunTimer(now);
-      TIMSK1 = _BV(TOIE1);
-    }
+  uint8_t mode = kRunning;
+  if (control & MOTOR_CTRL_DIRECTION) mode |= kReverse;
+  uint32_t millis = 0;
+  if (control & MOTOR_CTRL_ENDPOINT_MILLIS) {
+    millis = limit;
+    limit = 0;
+    if (millis) mode |= kThink;
+  }
+  if (limit == 0) mode |= kEndless;
+  const __uint24 laps = millis >> 15;
+  const uint32_t rest = limit - 1;
+  const Setting setting = chooseSetting(timerTop32virtual);
+  const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
+  const uint16_t elapsed = pgm_read_byte(&lowerElapsed[entry]);
+  const Masked masked;
+  const uint8_t before = motion.mode;
+  const uint32_t here = lowerPosition();
+  motion.target = mode & kReverse ? here - limit : here + limit;
+  motion.rest = rest;
+  motion.restHigh = rest >> 16;
+  GPIOR1 = 1;
+  motion.run = mode & kThink ? 1 : 255;
+  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endLaps = laps;
+  motion.next = setting;
+  motion.elapsed = elapsed;
+  motion.status = MOTOR_STAT_SPIN_FIXED;
+  motion.mode = mode;
+  if ((before ^ mode) & kReverse) {
+    GPIOR0 += mode & kReverse ? 2 : -2;
+  }
+  if (before & kRunning) {
+    lowerTakeOver();
+  } else {
+    lowerStopTimer();
+    lowerEnergise();
+    lowerRunTimer(0);
+    TIMSK1 = _BV(TOIE1);
   }
   return 0;
 }
 
 uint8_t lowerReadStatus() {
-  uint8_t status = 0;
-  {
-    const Masked masked;
-    status = lowerStatus;
-    // A millisecond limit ends on time, though the next step may be far away.
-    const bool limited = (lowerMode & (kThink | kCoast)) == kThink;
-    if (limited && lowerMillisOver()) {
-      status |= MOTOR_STAT_REACHED;
-    }
-  }
+  const Masked masked;
+  uint8_t status = lowerMotion.status;
+  // A millisecond limit ends on time, though the next step may be far away.
+  const bool limited = (lowerMotion.mode & (kThink | kCoast)) == kThink;
+  if (limited && lowerMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -384,26 +410,21 @@ int32_t lowerReadPosition() {
 }
 
 // Switches the coils on or off, unless the motor runs.
-static int8_t lowerSetCoils(bool on) {
-  int8_t result = 0;
-  {
-    const Masked masked;
-    if (lowerMode & kRunning) {
-      lowerStatus |= MOTOR_STAT_FAULT;
-      result = MOTOR_ERROR_RUNNING;
-    } else {
-      lowerStopTimer();
-      lowerMode &= kReverse;
-      if (on) {
-        lowerShow();
-        PORTB |= 0x20;  // PWM B
-        PORTE |= 0x20;  // PWM A
-      } else {
-        lowerCoilsOff();
-      }
-    }
+SHARED int8_t lowerSetCoils(bool on) {
+  const Masked masked;
+  auto &motion = near(lowerMotion);
+  if (motion.mode & kRunning) {
+    motion.status |= MOTOR_STAT_FAULT;
+    return MOTOR_ERROR_RUNNING;
   }
-  return result;
+  lowerStopTimer();
+  motion.mode &= kReverse;
+  if (on) {
+    lowerEnergise();
+  } else {
+    lowerCoilsOff();
+  }
+  return 0;
 }
 
 int8_t lowerHold() { return lowerSetCoils(true); }
@@ -434,32 +455,9 @@ static const uint8_t upperRing[] PROGMEM __attribute__((aligned(32))) = {
      26, 0x28,  // back from 7
 };
 
-static uint8_t upperMode;  // kRunning, kReverse and so on
-static uint8_t upperStatus;  // MOTOR_STAT_...
-// Steps counted down at a time: 255, or 1 to think before each.
-static uint8_t upperRun;
-// Steps to make after those that are counted down in upperCount, and their upper half.
-static uint16_t upperRest;
-static uint16_t upperRestHigh;
-// The position when all of them are made.
-static uint32_t upperTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
-static uint16_t upperEndMillis;
-static __uint24 upperEndLaps;
-// The next step sets the timer to this, unless its select is 0.
-static Setting upperNext;
+static ConstantMotion upperMotion;
 static uint8_t upperCount;  // step interrupts until the next boundary
 static uint8_t upperState;  // the row of the present phase
-
-// Where the motor is: the target less what is left to do. Only while interrupts are off.
-static uint32_t upperPosition() {
-  const uint32_t rest =
-      static_cast<uint32_t>(upperRestHigh) << 16 | upperRest;
-  const uint32_t left = rest + upperCount;
-  return upperMode & kReverse
-      ? upperTarget + left
-      : upperTarget - left;
-}
 
 // Writes the pattern of the present phase. Only while interrupts are off.
 INLINE void upperShow() {
@@ -478,6 +476,31 @@ INLINE void upperCoilsOff() {
   PORTH &= 0xE7;  // PWM A, PWM B
 }
 
+// Steps that are left to do. Only while interrupts are off.
+INLINE uint32_t upperLeft() {
+  auto &motion = near(upperMotion);
+  return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + upperCount;
+}
+
+// Where the motor is: the target less what is left to do. Only while interrupts are off.
+SHARED uint32_t upperPosition() {
+  auto &motion = near(upperMotion);
+  const uint32_t left = upperLeft();
+  return motion.target + (motion.mode & kReverse ? left : -left);
+}
+
+// Lets the current of the present phase flow. Only while interrupts are off.
+SHARED void upperEnergise() {
+  upperShow();
+}
+
+// Ticks since the step was due when the interrupt has set the timer anew, for each clock select
+// from 1 on; then the same when it made the step itself.
+static const uint8_t upperElapsed[] PROGMEM = {
+    126, 15, 1, 0, 0,
+    134, 16, 2, 0, 0,
+};
+
 // Stops the timer; no step comes after this. Only while interrupts are off.
 INLINE void upperStopTimer() {
   TCCR3B = 0;
@@ -488,14 +511,25 @@ INLINE void upperStopTimer() {
 // Sets a stopped or running timer to work. OCR3A is written twice: without WGM31
 // and WGM30 (mode 12) it goes straight to the comparator, with them (mode 15) into the
 // buffer from which each period takes it.
-INLINE void upperRunTimer(Setting setting) {
+INLINE void upperRunTimer(uint8_t elapsed) {
+  Setting &next = upperMotion.next;
   TCCR3B = _BV(WGM33) | _BV(WGM32);
   TCCR3A = 0;
-  OCR3A = setting.top;
-  TCNT3 = setting.elapsed;
+  OCR3A = next.top;
+  TCNT3 = elapsed;
   TCCR3A = _BV(WGM31) | _BV(WGM30);
-  OCR3A = setting.top;
-  TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
+  OCR3A = next.top;
+  TCCR3B = _BV(WGM33) | _BV(WGM32) | next.select;
+  next.select = 0;
+}
+
+// Leaves the setting to the timer, which takes it over when the interval in progress ends, if the
+// prescaler stays and that end is not due already. Otherwise the next step sets the timer.
+INLINE void upperTakeOver() {
+  Setting &next = upperMotion.next;
+  if ((TCCR3B & 7) != next.select) return;
+  OCR3A = next.top;
+  if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
 // Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 214 when it
@@ -559,26 +593,33 @@ ISR(TIMER3_OVF_vect, ISR_NAKED) {
         [scratch] "I"(_SFR_IO_ADDR(GPIOR2)),
         [count] "i"(&upperCount),
         [state] "i"(&upperState),
-        [mode] "i"(&upperMode),
+        [mode] "i"(&upperMotion.mode),
         [think] "I"(0),
         [ring] "i"(upperRing),
         [port0] "n"(_SFR_MEM_ADDR(PORTH))
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped.
+// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
 INLINE void upperReached(uint8_t mode) {
-  upperMode = (upperMode & kReverse) | mode;
-  upperStatus = (upperStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+  auto &motion = upperMotion;
+  motion.mode = (motion.mode & kReverse) | mode;
+  motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+}
+
+INLINE void upperHalt(uint8_t mode) {
+  upperStopTimer();
+  upperReached(mode);
 }
 
 // Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
 // before each step. Only while interrupts are off.
 INLINE bool upperMillisOver() {
-  if (static_cast<int16_t>(millisCount() - upperEndMillis) < 0) return false;
-  if (upperEndLaps == 0) return true;
-  --upperEndLaps;
-  upperEndMillis += 0x8000;
+  auto &motion = upperMotion;
+  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
+  if (motion.endLaps == 0) return true;
+  --motion.endLaps;
+  motion.endMillis += 0x8000;
   return false;
 }
 
@@ -587,133 +628,118 @@ INLINE bool upperMillisOver() {
 // millisecond limit runs.
 extern "C" void __vector_upper_boundary() __attribute__((signal, used, externally_visible));
 void __vector_upper_boundary() {
-  const uint8_t mode = upperMode;
+  auto &motion = upperMotion;
+  const uint8_t mode = motion.mode;
   if (mode & kThink) {
     if ((mode & kCoast) || upperMillisOver()) {
       upperCount = 1;  // there was no step
-      upperStopTimer();
       upperCoilsOff();
-      upperReached(0);
+      upperHalt(0);
       return;
     }
     upperStep();
   }
-  if (upperNext.select) {
-    upperRunTimer(upperNext);
-    upperNext.select = 0;
-  }
-  const uint16_t rest = upperRest;
-  uint8_t run = upperRun;
+  if (motion.next.select) upperRunTimer(motion.elapsed);
+  const uint16_t rest = motion.rest;
+  uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || upperRestHigh) {
-      --upperRestHigh;
+    if ((mode & kEndless) || motion.restHigh) {
+      --motion.restHigh;
     } else if (rest) {
       run = rest;
     } else {
       // The rotor is still on its way: the coils go off one interval after the last step.
       upperReached(kThink | kCoast);
-      upperRest = upperRestHigh = -1;
+      motion.rest = motion.restHigh = -1;
       upperCount = 1;
       return;
     }
   }
-  upperRest = rest - run;
+  motion.rest = rest - run;
   upperCount = run;
 }
 
 void upperShieldInit() {
-  {
-    const Masked masked;
-    upperStopTimer();
-    upperMode = 0;
-    upperStatus = 0;
-    upperRest = 0;
-    upperRestHigh = 0;
-    upperTarget = 0;
-    upperCount = 0;
-    upperState = 0;  // phase 0, going forward
-    PORTH &= 0x87;  // PWM A, PWM B, DIR A, DIR B
-    DDRH |= 0x78;  // PWM A, PWM B, DIR A, DIR B
-  }
+  const Masked masked;
+  upperStopTimer();
+  auto &motion = near(upperMotion);
+  motion.mode = 0;
+  motion.status = 0;
+  motion.rest = 0;
+  motion.target = 0;
+  motion.restHigh = 0;
+  upperCount = 0;
+  upperState = 0;  // phase 0, going forward
+  PORTH &= 0x87;  // PWM A, PWM B, DIR A, DIR B
+  DDRH |= 0x78;  // PWM A, PWM B, DIR A, DIR B
 }
 
 int8_t upperSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    {
-      const Masked masked;
-      upperStopTimer();
-      upperCoilsOff();
-      upperReached(0);
-    }
+    const Masked masked;
+    upperCoilsOff();
+    upperHalt(0);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
   const int8_t error = control & ~kKnown ? MOTOR_ERROR_CONTROL : checkSpeed(timerTop32virtual);
+  auto &motion = near(upperMotion);
   if (error) {
     const Masked masked;
-    upperStatus |= error == MOTOR_ERROR_CONTROL
+    motion.status |= error == MOTOR_ERROR_CONTROL
         ? MOTOR_STAT_FAULT
         : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR;
     return error;
   }
-  const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
-  const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
-  const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
-  const uint32_t rest = steps - 1;
-  // Cycles from the due step until the interrupt has set the timer anew.
-  const uint8_t elapsed = millisLimit ? 134 : 126;
-  const Setting setting = chooseSetting(timerTop32virtual, elapsed);
-  {
-    const Masked masked;
-    const uint8_t before = upperMode;
-    const uint32_t here = upperPosition();
-    if ((before & kReverse) != reverse) {
-      upperState += reverse ? 2 : -2;
-    }
-    upperTarget = reverse ? here - steps : here + steps;
-    upperRest = rest;
-    upperRestHigh = rest >> 16;
-    upperCount = 1;
-    upperEndMillis = millisCount() + (limit & 0x7FFF);
-    upperEndLaps = laps;
-    upperStatus = MOTOR_STAT_SPIN_FIXED;
-    uint8_t mode = reverse | kRunning;
-    if (millisLimit) mode |= kThink;
-    upperRun = millisLimit ? 1 : 255;
-    if (steps == 0) mode |= kEndless;
-    upperMode = mode;
-    if (before & kRunning) {
-      upperNext = setting;
-      if ((TCCR3B & 7) == setting.select) {
-        OCR3A = setting.top;  // the timer takes it over when the interval in progress ends
-        if (!(TIFR3 & _BV(TOV3))) upperNext.select = 0;  // not due already
-      }
-    } else {
-      upperStopTimer();
-      upperShow();
-      upperNext.select = 0;
-      Setting now = setting;
-      now.elapsed = 0;
-      upperRunTimer(now);
-      TIMSK3 = _BV(TOIE3);
-    }
+  uint8_t mode = kRunning;
+  if (control & MOTOR_CTRL_DIRECTION) mode |= kReverse;
+  uint32_t millis = 0;
+  if (control & MOTOR_CTRL_ENDPOINT_MILLIS) {
+    millis = limit;
+    limit = 0;
+    if (millis) mode |= kThink;
+  }
+  if (limit == 0) mode |= kEndless;
+  const __uint24 laps = millis >> 15;
+  const uint32_t rest = limit - 1;
+  const Setting setting = chooseSetting(timerTop32virtual);
+  const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
+  const uint16_t elapsed = pgm_read_byte(&upperElapsed[entry]);
+  const Masked masked;
+  const uint8_t before = motion.mode;
+  const uint32_t here = upperPosition();
+  motion.target = mode & kReverse ? here - limit : here + limit;
+  motion.rest = rest;
+  motion.restHigh = rest >> 16;
+  upperCount = 1;
+  motion.run = mode & kThink ? 1 : 255;
+  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endLaps = laps;
+  motion.next = setting;
+  motion.elapsed = elapsed;
+  motion.status = MOTOR_STAT_SPIN_FIXED;
+  motion.mode = mode;
+  if ((before ^ mode) & kReverse) {
+    upperState += mode & kReverse ? 2 : -2;
+  }
+  if (before & kRunning) {
+    upperTakeOver();
+  } else {
+    upperStopTimer();
+    upperEnergise();
+    upperRunTimer(0);
+    TIMSK3 = _BV(TOIE3);
   }
   return 0;
 }
 
 uint8_t upperReadStatus() {
-  uint8_t status = 0;
-  {
-    const Masked masked;
-    status = upperStatus;
-    // A millisecond limit ends on time, though the next step may be far away.
-    const bool limited = (upperMode & (kThink | kCoast)) == kThink;
-    if (limited && upperMillisOver()) {
-      status |= MOTOR_STAT_REACHED;
-    }
-  }
+  const Masked masked;
+  uint8_t status = upperMotion.status;
+  // A millisecond limit ends on time, though the next step may be far away.
+  const bool limited = (upperMotion.mode & (kThink | kCoast)) == kThink;
+  if (limited && upperMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -723,24 +749,21 @@ int32_t upperReadPosition() {
 }
 
 // Switches the coils on or off, unless the motor runs.
-static int8_t upperSetCoils(bool on) {
-  int8_t result = 0;
-  {
-    const Masked masked;
-    if (upperMode & kRunning) {
-      upperStatus |= MOTOR_STAT_FAULT;
-      result = MOTOR_ERROR_RUNNING;
-    } else {
-      upperStopTimer();
-      upperMode &= kReverse;
-      if (on) {
-        upperShow();
-      } else {
-        upperCoilsOff();
-      }
-    }
+SHARED int8_t upperSetCoils(bool on) {
+  const Masked masked;
+  auto &motion = near(upperMotion);
+  if (motion.mode & kRunning) {
+    motion.status |= MOTOR_STAT_FAULT;
+    return MOTOR_ERROR_RUNNING;
   }
-  return result;
+  upperStopTimer();
+  motion.mode &= kReverse;
+  if (on) {
+    upperEnergise();
+  } else {
+    upperCoilsOff();
+  }
+  return 0;
 }
 
 int8_t upperHold() { return upperSetCoils(true); }

@@ -8,18 +8,29 @@
 
 // The step interrupt calls nothing, so what it uses must not become a call.
 #define INLINE static inline __attribute__((always_inline))
+// What several callers use exists once, though the compiler would rather copy it.
+#define SHARED static __attribute__((noinline))
 
 // Interrupts are off as long as one of these lives. All that was written by then is in RAM before
 // they come on again: the compiler must not move it past that moment.
 struct Masked {
   const uint8_t sreg;
-  Masked() : sreg(SREG) { cli(); }
-  ~Masked() {
+  __attribute__((always_inline)) Masked() : sreg(SREG) { cli(); }
+  __attribute__((always_inline)) ~Masked() {
     asm volatile("" ::: "memory");
     SREG = sreg;
     asm volatile("" ::: "memory");
   }
 };
+
+// The same object by a pointer whose value the compiler does not know: members are then two bytes
+// of code away, where an absolute address takes four.
+template <typename T>
+INLINE T &near(T &object) {
+  T *pointer = &object;
+  asm("" : "+b"(pointer));
+  return *pointer;
+}
 
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
@@ -46,37 +57,48 @@ constexpr uint8_t kClock = 0x20;    // look if a moment has come; the interrupt'
 constexpr uint8_t kLimited = 0x40;  // a limit in milliseconds
 constexpr uint8_t kEnded = 0x80;    // at an end point, not just stopped
 
-// A timer's TOP and clock select bits, and how many ticks ago its period began when a step
-// interrupt sets it to work.
+// A timer's TOP and clock select bits; 0 selects no clock.
 struct Setting {
   uint16_t top;
   uint8_t select;
-  uint8_t elapsed;
 };
 
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
-// Without a loop, since the step interrupt comes here when a speed changes by itself.
-static Setting chooseSetting(uint32_t period, uint8_t elapsed) {
-  const uint16_t high = period >> 16;
-  uint16_t ticks = period;
+SHARED Setting chooseSetting(uint32_t period) {
   uint8_t select = 1;
-  if (high >= 256) {
-    ticks = period >> 10;
-    select = 5;
-  } else if (high >= 64) {
-    ticks = period >> 8;
-    select = 4;
-  } else if (high >= 8) {
-    ticks = period >> 6;
-    select = 3;
-  } else if (high) {
-    ticks = period >> 3;
-    select = 2;
+  while (period >> 16) {
+    period >>= 2;
+    if (select < 3) period >>= 1;
+    ++select;
   }
-  elapsed = select == 1 ? elapsed : select == 2 ? elapsed >> 3 : select == 3 ? elapsed >> 6 : 0;
-  return {static_cast<uint16_t>(ticks - 1), select, elapsed};
+  return {static_cast<uint16_t>(period - 1), select};
 }
+
+// What is kept of a motion whose speed changes.
+struct VariableMotion {
+  uint8_t mode;  // kRunning, kReverse and so on
+  uint8_t status;  // MOTOR_STAT_...
+  uint8_t control;  // MOTOR_CTRL_... of the present motion
+  uint16_t wake;  // the interrupt goes on in its handler when the lower half of millis() is here
+  uint32_t rest;  // steps to make after those that are counted down
+  uint32_t target;  // the position when all of them are made
+  uint32_t start;  // of a limit in milliseconds, by millis()
+  uint32_t limit;  // steps or milliseconds, as it was given
+  Setting next;  // the next step sets the timer to this, unless its select is 0
+  uint32_t top;  // the present virtual TOP,
+  uint32_t modification;  // what the next update event changes
+  uint16_t interval;  // between two events, in steps or milliseconds
+  uint16_t updates;  // how many are left
+  uint32_t eventAt;  // when the next one is due, as steps that are made or by millis()
+  void (*onReached)();
+  void (*onFault)();
+};
+
+constexpr uint16_t kFar = 0x7FFF;  // as many milliseconds as the interrupt can see ahead
+
+// What millis() returns. Only while interrupts are off.
+SHARED uint32_t millisNow() { return timer0_millis; }
 
 // Returns why a call of a speed function must be refused, or 0.
 static int8_t checkSpeed(uint32_t period) {
@@ -85,7 +107,7 @@ static int8_t checkSpeed(uint32_t period) {
   return 0;
 }
 
-uint32_t motorTimerGetIOclocksPerSecond() {
+__attribute__((noinline)) uint32_t motorTimerGetIOclocksPerSecond() {
   return F_CPU >> (CLKPR & 0x0F);  // CLKPS: the divider is a power of two
 }
 
@@ -98,41 +120,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses) {
 // What PORTB shows in each phase; the phase is the position modulo 4.
 static const uint8_t motorPhases[] PROGMEM = {0x00, 0x10, 0x30, 0x20};
 
-static uint8_t motorMode;  // kRunning, kReverse and so on
-static uint8_t motorStatus;  // MOTOR_STAT_...
-static uint8_t motorControl;  // MOTOR_CTRL_... of the present motion
-// Steps to make after those that are counted down in GPIOR1, and their upper half.
-static uint16_t motorRest;
-static uint16_t motorRestHigh;
-// The position when all of them are made.
-static uint32_t motorTarget;
-// A limit in milliseconds, counted from the start.
-static uint32_t motorStartMillis;
-static uint32_t motorLimitMillis;
-// The step interrupt goes on in its handler when the lower half of millis() is here.
-static uint16_t motorWake;
-// The next step sets the timer to this, unless its select is 0.
-static Setting motorNext;
-// Update events: the virtual TOP, what each changes, how often, how many are left, and the
-// count of millis() or the position at which the next one is due.
-static uint32_t motorTop;
-static uint32_t motorModification;
-static uint16_t motorInterval;
-static uint16_t motorUpdates;
-static uint32_t motorEventAt;
-static uint16_t motorEventSteps;  // steps until then, after those counted down
-static void (*motorOnReached)();
-static void (*motorOnFault)();
-
-// Where the motor is: the target less what is left to do. Only while interrupts are off.
-static uint32_t motorPosition() {
-  const uint32_t rest =
-      static_cast<uint32_t>(motorRestHigh) << 16 | motorRest;
-  const uint32_t left = rest + GPIOR1;
-  return motorMode & kReverse
-      ? motorTarget + left
-      : motorTarget - left;
-}
+static VariableMotion motorMotion;
 
 // Writes the pattern of a position. Only while interrupts are off.
 INLINE void motorShow(uint8_t position) {
@@ -152,6 +140,36 @@ INLINE void motorCoilsOff() {
   PORTD &= 0xF7;  // PWM A
 }
 
+// Steps that are left to do. Only while interrupts are off.
+INLINE uint32_t motorLeft() {
+  auto &motion = near(motorMotion);
+  return motion.rest + GPIOR1;
+}
+
+// Where the motor is: the target less what is left to do. Only while interrupts are off.
+SHARED uint32_t motorPosition() {
+  auto &motion = near(motorMotion);
+  const uint32_t left = motorLeft();
+  return motion.target + (motion.mode & kReverse ? left : -left);
+}
+
+// Lets the current of the present phase flow. Only while interrupts are off.
+SHARED void motorEnergise() {
+  motorShow(motorPosition());
+  PORTB |= 0x08;  // PWM B
+  PORTD |= 0x08;  // PWM A
+}
+
+// Ticks since the step was due when the interrupt has set the timer anew, for each clock select
+// from 1 on; then the same when it made the step itself; then both with a limit in
+// milliseconds.
+static const uint8_t motorElapsed[] PROGMEM = {
+    180, 22, 2, 0, 0,
+    194, 24, 3, 0, 0,
+    220, 27, 3, 0, 0,
+    234, 29, 3, 0, 0,
+};
+
 // Stops the timer; no step comes after this. Only while interrupts are off.
 INLINE void motorStopTimer() {
   TCCR1B = 0;
@@ -162,17 +180,28 @@ INLINE void motorStopTimer() {
 // Sets a stopped or running timer to work. OCR1A is written twice: without WGM11
 // and WGM10 (mode 12) it goes straight to the comparator, with them (mode 15) into the
 // buffer from which each period takes it.
-INLINE void motorRunTimer(Setting setting) {
+SHARED void motorRunTimer(uint8_t elapsed) {
+  Setting &next = near(motorMotion).next;
   TCCR1B = _BV(WGM13) | _BV(WGM12);
   TCCR1A = 0;
-  OCR1A = setting.top;
-  TCNT1 = setting.elapsed;
+  OCR1A = next.top;
+  TCNT1 = elapsed;
   TCCR1A = _BV(WGM11) | _BV(WGM10);
-  OCR1A = setting.top;
-  TCCR1B = _BV(WGM13) | _BV(WGM12) | setting.select;
+  OCR1A = next.top;
+  TCCR1B = _BV(WGM13) | _BV(WGM12) | next.select;
+  next.select = 0;
 }
 
-// Timer 1 overflow: one step, 32 cycles from the interrupt's response to RETI; at most 583 when it
+// Leaves the setting to the timer, which takes it over when the interval in progress ends, if the
+// prescaler stays and that end is not due already. Otherwise the next step sets the timer.
+SHARED void motorTakeOver() {
+  Setting &next = near(motorMotion).next;
+  if ((TCCR1B & 7) != next.select) return;
+  OCR1A = next.top;
+  if (!(TIFR1 & _BV(TOV1))) next.select = 0;
+}
+
+// Timer 1 overflow: one step, 32 cycles from the interrupt's response to RETI; at most 738 when it
 // goes on in __vector_motor_boundary. The wires change 21 cycles after the timer wraps (45 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -228,161 +257,197 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
         [scratch] "I"(_SFR_IO_ADDR(GPIOR2)),
         [count] "I"(_SFR_IO_ADDR(GPIOR1)),
         [state] "I"(_SFR_IO_ADDR(GPIOR0)),
-        [mode] "i"(&motorMode),
+        [mode] "i"(&motorMotion.mode),
         [think] "I"(0),
         [clock] "I"(5),
-        [wake] "i"(&motorWake),
+        [wake] "i"(&motorMotion.wake),
         [millis] "i"(&timer0_millis),
         [port0] "I"(_SFR_IO_ADDR(PINB))
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped.
+// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
 INLINE void motorReached(uint8_t mode) {
-  motorMode = (motorMode & (kReverse | kEnded)) | mode;
-  motorStatus = (motorStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
+  auto &motion = motorMotion;
+  motion.mode = (motion.mode & (kReverse | kEnded)) | mode;
+  motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
-// Stops at an end point or for good; *mode* says which. Only while interrupts are off.
-static void __attribute__((noinline)) motorHalt(uint8_t mode) {
+// Stops at an end point or for good. Only while interrupts are off.
+SHARED void motorHalt(uint8_t mode) {
   motorStopTimer();
   motorReached(mode);
 }
 
-// Notes a fault: its callback is due again.
-INLINE void motorFault(uint8_t bits) {
-  motorStatus = (motorStatus & ~MOTOR_STAT_FAULT_CALLED) | bits;
+// Notes a fault: its callback is due again. Only while interrupts are off.
+SHARED void motorFault(uint8_t bits) {
+  auto &motion = near(motorMotion);
+  motion.status = (motion.status & ~MOTOR_STAT_FAULT_CALLED) | bits;
 }
 
-// Tells whether the interrupt times the events, by the clock or by steps.
-INLINE bool motorHasEvents(uint8_t timing) {
-  constexpr uint8_t kTiming = MOTOR_CTRL_IRQ_TIMING | MOTOR_CTRL_UPDATE_STEPS;
-  return motorUpdates && (motorControl & kTiming) == timing;
-}
-
-// Takes a setting over: the timer does so when the interval in progress ends, if the prescaler
-// stays and that end is not due already. Otherwise the next step sets the timer.
-INLINE void motorTakeOver(const Setting &setting) {
-  motorNext = setting;
-  if ((TCCR1B & 7) == setting.select) {
-    OCR1A = setting.top;  // the timer takes it over when the interval in progress ends
-    if (!(TIFR1 & _BV(TOV1))) motorNext.select = 0;  // not due already
+// Milliseconds until a limit ends, at most kFar; 0 at its end. Only while interrupts are off.
+SHARED uint16_t motorMillisLeft() {
+  auto &motion = near(motorMotion);
+  if (motion.mode & kLimited) {
+    const uint32_t gone = timer0_millis - motion.start;
+    if (gone >= motion.limit) return 0;
+    const uint32_t left = motion.limit - gone;
+    if (left < kFar) return left;
   }
-  if (!motorNext.select) return;
-  const uint8_t ahead = GPIOR1 - 1;
-  GPIOR1 = 1;
-  motorRest += ahead;
-  if (motorRest < ahead) ++motorRestHigh;
-  motorEventSteps += ahead;
+  return kFar;
+}
+
+// What the events are counted by: the steps made (less those of the whole move), or millis().
+// Only while interrupts are off.
+SHARED uint32_t motorCount() {
+  const bool bySteps = near(motorMotion).control & MOTOR_CTRL_UPDATE_STEPS;
+  return bySteps ? ~motorLeft() : millisNow();
+}
+
+// Steps or milliseconds until the next event; 0: it is due. Only while interrupts are off.
+SHARED uint16_t motorUntilEvent() {
+  const int32_t left = near(motorMotion).eventAt - motorCount();
+  return left < 0 ? 0 : left;
+}
+
+// The next event comes one interval after *count*. Only while interrupts are off.
+SHARED void motorNextEvent(uint32_t count) {
+  auto &motion = near(motorMotion);
+  motion.eventAt = count + motion.interval;
 }
 
 // One update event: a new virtual TOP, and with VARIABLE_PWR a new modification. At the end of
 // the range it stops with a fault; no step is lost. Only while interrupts are off.
-static void __attribute__((noinline)) motorUpdate() {
-  const bool faster = motorControl & MOTOR_CTRL_FASTER;
-  const uint32_t room =
-      faster ? motorTop - MOTOR_MIN_TOP : MOTOR_MAX_TOP - motorTop;
-  uint32_t change = motorModification;
+SHARED void motorUpdate() {
+  auto &motion = near(motorMotion);
+  motorNextEvent(motion.eventAt);
+  const bool faster = motion.control & MOTOR_CTRL_FASTER;
+  const uint32_t change = motion.modification;
+  uint32_t room = faster ? motion.top - MOTOR_MIN_TOP : MOTOR_MAX_TOP - motion.top;
   if (change > room) {
-    change = room;
-    motorUpdates = 1;
+    room = 0;
+    motion.updates = 1;
     motorFault(MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR);
-  } else if (motorControl & MOTOR_CTRL_VARIABLE_PWR) {
-    motorModification = faster ? change >> 1 : change << 1;
+  } else {
+    room -= change;
+    if (motion.control & MOTOR_CTRL_VARIABLE_PWR) {
+      motion.modification = faster ? change >> 1 : change << 1;
+    }
   }
-  if (--motorUpdates == 0) motorStatus |= MOTOR_STAT_SPIN_FIXED;
-  const uint32_t top = motorTop + (faster ? -change : change);
-  motorTop = top;
-  motorTakeOver(chooseSetting(top, 140));
-}
-
-// Sets the moment at which the step interrupt must go on in its handler again.
-static void __attribute__((noinline)) motorSetWake(uint32_t now) {
-  uint16_t wait = 0x7FFF;  // further ahead the 16 bits of the interrupt do not reach
-  if (motorMode & kLimited) {
-    const uint32_t left = motorLimitMillis - (now - motorStartMillis);
-    if (left < wait) wait = left;
+  motion.top = faster ? MOTOR_MIN_TOP + room : MOTOR_MAX_TOP - room;
+  if (--motion.updates == 0) motion.status |= MOTOR_STAT_SPIN_FIXED;
+  motion.next = chooseSetting(motion.top);
+  motorTakeOver();
+  const uint8_t count = GPIOR1;
+  if (motion.next.select && count) {
+    const uint8_t ahead = count - 1;
+    GPIOR1 = 1;  // the next step sets the timer
+    motion.rest += ahead;
   }
-  if (motorHasEvents(MOTOR_CTRL_IRQ_TIMING)) {
-    const int32_t left = motorEventAt - now;
-    if (left < static_cast<int32_t>(wait)) wait = left < 0 ? 0 : left;
-  } else if (!(motorMode & kLimited)) {
-    motorMode &= ~kClock;
-  }
-  motorWake = now + wait;
 }
 
 // Where the step interrupt goes on in its rare ways: after the last step of a run, and instead
 // of a step when the clock has come to the moment to wake up at.
 extern "C" void __vector_motor_boundary() __attribute__((signal, used, externally_visible));
 void __vector_motor_boundary() {
+  auto &motion = near(motorMotion);
   uint8_t count = GPIOR1;
-  const bool woken = count != 0;
-  bool due = false;
-  uint32_t now = 0;
-  if (woken) {
-    now = timer0_millis;
-    const bool limited = motorMode & kLimited;
-    if (limited && now - motorStartMillis >= motorLimitMillis) {
+  uint16_t wait = motorMillisLeft();
+  uint8_t row = motion.mode & kLimited ? 10 : 0;
+  if (count) {  // the clock has come to that moment; no step is made yet
+    if (wait == 0) {
       motorHalt(kEnded);
       return;
     }
     motorStep();
-    --count;
-    due = motorHasEvents(MOTOR_CTRL_IRQ_TIMING) &&
-          static_cast<int32_t>(now - motorEventAt) >= 0;
-    if (due) motorEventAt += motorInterval;
+    GPIOR1 = --count;
+    row += 5;
   }
-  if (motorNext.select) {
-    Setting setting = motorNext;
-    if (woken && setting.select == 1) setting.elapsed += 59;
-    if (woken && setting.select == 2) setting.elapsed += 7;
-    motorRunTimer(setting);
-    motorNext.select = 0;
+  if (motion.next.select) {
+    motorRunTimer(pgm_read_byte(&motorElapsed[row + motion.next.select - 1]));
   }
-  if (count == 0) {
-    count = 255;
-    if (motorHasEvents(MOTOR_CTRL_IRQ_TIMING | MOTOR_CTRL_UPDATE_STEPS)) {
-      due = motorEventSteps == 0;
-      if (due) motorEventSteps = motorInterval;
-      if (motorEventSteps < count) count = motorEventSteps;
-      motorEventSteps -= count;
+  uint8_t run = 255;
+  if (motion.updates && (motion.control & MOTOR_CTRL_IRQ_TIMING)) {
+    uint16_t until = motorUntilEvent();
+    if (until == 0) {
+      motorUpdate();
+      run = 1;  // look again with the next step
+    } else if (motion.control & MOTOR_CTRL_UPDATE_STEPS) {
+      if (until < run) run = until;
+      until = kFar;
     }
-    const uint16_t rest = motorRest;
-    if (rest < count) {
-      if ((motorMode & kEndless) || motorRestHigh) {
-        --motorRestHigh;
-      } else if (rest) {
-        motorEventSteps += count - rest;
-        count = rest;
-      } else {
-        GPIOR1 = 0;
-        motorHalt(kEnded);
-        return;
-      }
-    }
-    motorRest = rest - count;
+    if (until < wait) wait = until;
+  } else if (!(motion.mode & kLimited)) {
+    motion.mode &= ~kClock;
   }
-  GPIOR1 = count;
-  if (due) motorUpdate();
-  if (woken) motorSetWake(now);
+  motion.wake = millisNow() + wait;
+  if (count) return;
+  const uint32_t rest = motion.rest;
+  if (rest < run && !(motion.mode & kEndless)) {
+    if (!rest) {
+      motorHalt(kEnded);
+      return;
+    }
+    run = rest;
+  }
+  motion.rest = rest - run;
+  GPIOR1 = run;
 }
 
 void motorShieldInit() {
-  {
-    const Masked masked;
+  const Masked masked;
+  motorStopTimer();
+  auto &motion = near(motorMotion);
+  motion.mode = 0;
+  motion.status = 0;
+  motion.rest = 0;
+  motion.target = 0;
+  GPIOR1 = 0;
+  GPIOR0 = 0x10;  // what the step from phase 0 to 1 toggles
+  PORTB &= 0xC4;  // DIR A, DIR B, PWM B, BRAKE A, BRAKE B
+  PORTD &= 0xF7;  // PWM A
+  DDRB |= 0x3B;  // DIR A, DIR B, PWM B, BRAKE A, BRAKE B
+  DDRD |= 0x08;  // PWM A
+}
+
+// Starts or changes the motion that is described by its fields. Only while interrupts are off.
+INLINE void motorStart() {
+  auto &motion = near(motorMotion);
+  const uint8_t control = motion.control;
+  constexpr uint8_t kEvents =
+      MOTOR_CTRL_SPEED_VARIABLE | MOTOR_CTRL_IRQ_TIMING | MOTOR_CTRL_UPDATE_STEPS;
+  uint8_t mode = kRunning;
+  if ((control & kEvents) == (MOTOR_CTRL_SPEED_VARIABLE | MOTOR_CTRL_IRQ_TIMING)) mode |= kClock;
+  uint32_t steps = motion.limit;
+  if (control & MOTOR_CTRL_ENDPOINT_MILLIS) {
+    if (steps) mode |= kLimited | kClock;
+    steps = 0;
+  }
+  if (steps == 0) mode |= kEndless;
+  const uint32_t here = motorPosition();
+  motion.rest = steps - 1;
+  GPIOR1 = 1;
+  if (control & MOTOR_CTRL_DIRECTION) {
+    mode |= kReverse;
+    steps = -steps;
+  }
+  motion.target = here + steps;
+  motion.start = millisNow();
+  motion.wake = motion.start;  // with the first step; then it knows when the next is due
+  motorNextEvent(motorCount());
+  motion.status = motion.updates ? 0 : MOTOR_STAT_SPIN_FIXED;
+  const uint8_t before = motion.mode;
+  motion.mode = mode;
+  if ((before ^ mode) & kReverse) {
+    GPIOR0 ^= 0x30;
+  }
+  if (before & kRunning) {
+    motorTakeOver();
+  } else {
     motorStopTimer();
-    motorMode = 0;
-    motorStatus = 0;
-    motorRest = 0;
-    motorRestHigh = 0;
-    motorTarget = 0;
-    GPIOR1 = 0;
-    GPIOR0 = 0x10;  // what the step from phase 0 to 1 toggles
-    PORTB &= 0xC4;  // DIR A, DIR B, PWM B, BRAKE A, BRAKE B
-    PORTD &= 0xF7;  // PWM A
-    DDRB |= 0x3B;  // DIR A, DIR B, PWM B, BRAKE A, BRAKE B
-    DDRD |= 0x08;  // PWM A
+    motorEnergise();
+    motorRunTimer(0);
+    TIMSK1 = _BV(TOIE1);
   }
 }
 
@@ -390,137 +455,81 @@ int8_t motorSetSpeed(
     uint8_t control, uint32_t timerTop32virtual, uint32_t limit, uint32_t timerModification,
     uint16_t timerUpd_ms, uint16_t modCounts) {
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
-    {
-      const Masked masked;
-      motorStopTimer();
-      if (!(control & MOTOR_CTRL_DRV_EN)) motorCoilsOff();
-      motorReached(0);
-    }
+    const Masked masked;
+    if (!(control & MOTOR_CTRL_DRV_EN)) motorCoilsOff();
+    motorHalt(0);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   int8_t error = checkSpeed(timerTop32virtual);
-  const bool variable = control & MOTOR_CTRL_SPEED_VARIABLE;
-  if (!error && variable && !(timerModification && timerUpd_ms && modCounts)) {
+  if (!(control & MOTOR_CTRL_SPEED_VARIABLE)) {
+    modCounts = 0;
+  } else if (!error && !(timerModification && timerUpd_ms && modCounts)) {
     error = MOTOR_ERROR_UPDATE;
   }
   if (error) {
-    {
-      const Masked masked;
-      motorFault(
-          error == MOTOR_ERROR_UPDATE ? MOTOR_STAT_FAULT
-                                      : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR);
-    }
+    const Masked masked;
+    motorFault(
+        error == MOTOR_ERROR_UPDATE ? MOTOR_STAT_FAULT
+                                    : MOTOR_STAT_FAULT | MOTOR_STAT_TIMER_DIV_ERROR);
     return error;
   }
-  const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
-  const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
-  const uint32_t rest = steps - 1;
-  uint8_t mode = reverse | kRunning;
-  if (steps == 0) mode |= kEndless;
-  if ((control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0) mode |= kLimited | kClock;
-  const bool bySteps = control & MOTOR_CTRL_UPDATE_STEPS;
-  if (variable && (control & MOTOR_CTRL_IRQ_TIMING) && !bySteps) mode |= kClock;
-  const Setting setting = chooseSetting(timerTop32virtual, 140);
-  {
-    const Masked masked;
-    const uint8_t before = motorMode;
-    const uint32_t here = motorPosition();
-    const uint32_t now = timer0_millis;
-    if ((before & kReverse) != reverse) {
-      GPIOR0 ^= 0x30;
-    }
-    motorTarget = reverse ? here - steps : here + steps;
-    motorRest = rest;
-    motorRestHigh = rest >> 16;
-    GPIOR1 = 1;
-    motorControl = control;
-    motorStartMillis = now;
-    motorLimitMillis = limit;
-    motorWake = now;  // with the first step; then it knows when the next is due
-    motorTop = timerTop32virtual;
-    motorModification = timerModification;
-    motorInterval = timerUpd_ms;
-    motorUpdates = variable ? modCounts : 0;
-    motorEventAt =
-        !bySteps ? now + timerUpd_ms : reverse ? here - timerUpd_ms : here + timerUpd_ms;
-    motorEventSteps = timerUpd_ms - 1;
-    motorStatus = variable ? 0 : MOTOR_STAT_SPIN_FIXED;
-    motorMode = mode;
-    if (before & kRunning) {
-      motorNext = setting;
-      if ((TCCR1B & 7) == setting.select) {
-        OCR1A = setting.top;  // the timer takes it over when the interval in progress ends
-        if (!(TIFR1 & _BV(TOV1))) motorNext.select = 0;  // not due already
-      }
-    } else {
-      motorStopTimer();
-      motorShow(here);
-      PORTB |= 0x08;  // PWM B
-      PORTD |= 0x08;  // PWM A
-      motorNext.select = 0;
-      Setting now = setting;
-      now.elapsed = 0;
-      motorRunTimer(now);
-      TIMSK1 = _BV(TOIE1);
-    }
-  }
+  const Setting setting = chooseSetting(timerTop32virtual);
+  const Masked masked;
+  auto &motion = near(motorMotion);
+  motion.control = control;
+  motion.top = timerTop32virtual;
+  motion.limit = limit;
+  motion.modification = timerModification;
+  motion.interval = timerUpd_ms;
+  motion.updates = modCounts;
+  motion.next = setting;
+  motorStart();
   return 0;
 }
 
-// Tells whether a limit in milliseconds has passed. Only while interrupts are off.
-static bool motorMillisOver() {
-  return (motorMode & kLimited) &&
-         timer0_millis - motorStartMillis >= motorLimitMillis;
-}
-
 void motorTimerUpdateCheck() {
+  auto &motion = near(motorMotion);
   bool reached = false;
   bool fault = false;
   {
     const Masked masked;
-    if ((motorMode & kRunning) && motorUpdates &&
-        !(motorControl & MOTOR_CTRL_IRQ_TIMING)) {
-      const bool bySteps = motorControl & MOTOR_CTRL_UPDATE_STEPS;
-      const bool back = bySteps && (motorMode & kReverse);
-      const uint32_t here = bySteps ? motorPosition() : timer0_millis;
-      const uint32_t ahead = here - motorEventAt;
-      if (static_cast<int32_t>(back ? -ahead : ahead) >= 0) {
-        motorEventAt += back ? -static_cast<uint32_t>(motorInterval) : motorInterval;
-        motorUpdate();
-      }
+    const bool mine = !(motion.control & MOTOR_CTRL_IRQ_TIMING);
+    if (mine && motion.updates && (motion.mode & kRunning) && motorUntilEvent() == 0) {
+      motorUpdate();
     }
-    const bool ended = (motorMode & kEnded) || motorMillisOver();
-    const uint8_t status = motorStatus;
-    if (ended && motorOnReached && !(status & MOTOR_STAT_REACH_CALLED)) {
+    uint8_t status = motion.status;
+    if (!(status & MOTOR_STAT_REACH_CALLED) && motion.onReached &&
+        ((motion.mode & kEnded) || motorMillisLeft() == 0)) {
       reached = true;
-      motorStatus |= MOTOR_STAT_REACH_CALLED;
+      status |= MOTOR_STAT_REACH_CALLED;
     }
-    if ((status & MOTOR_STAT_FAULT) && motorOnFault && !(status & MOTOR_STAT_FAULT_CALLED)) {
+    constexpr uint8_t kFault = MOTOR_STAT_FAULT | MOTOR_STAT_FAULT_CALLED;
+    if ((status & kFault) == MOTOR_STAT_FAULT && motion.onFault) {
       fault = true;
-      motorStatus |= MOTOR_STAT_FAULT_CALLED;
-      if (status & MOTOR_STAT_TIMER_DIV_ERROR) motorStatus |= MOTOR_STAT_TIMER_DIV_CALLED;
+      status |= MOTOR_STAT_FAULT_CALLED;
+      if (status & MOTOR_STAT_TIMER_DIV_ERROR) status |= MOTOR_STAT_TIMER_DIV_CALLED;
     }
+    motion.status = status;
   }
-  if (reached) motorOnReached();
-  if (fault) motorOnFault();
+  if (reached) motion.onReached();
+  if (fault) motion.onFault();
 }
 
 void motorCallBackPositionReached(void (*userFunction)()) {
-  { const Masked masked; motorOnReached = userFunction; }
+  const Masked masked;
+  motorMotion.onReached = userFunction;
 }
 
 void motorCallBackFault(void (*userFunction)()) {
-  { const Masked masked; motorOnFault = userFunction; }
+  const Masked masked;
+  motorMotion.onFault = userFunction;
 }
 
 uint8_t motorReadStatus() {
-  uint8_t status = 0;
-  {
-    const Masked masked;
-    status = motorStatus;
-    // A millisecond limit ends on time, though the next step may be far away.
-    if (motorMillisOver()) status |= MOTOR_STAT_REACHED;
-  }
+  const Masked masked;
+  uint8_t status = motorMotion.status;
+  // A millisecond limit ends on time, though the next step may be far away.
+  if (motorMillisLeft() == 0) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -530,26 +539,21 @@ int32_t motorReadPosition() {
 }
 
 // Switches the coils on or off, unless the motor runs.
-static int8_t motorSetCoils(bool on) {
-  int8_t result = 0;
-  {
-    const Masked masked;
-    if (motorMode & kRunning) {
-      motorFault(MOTOR_STAT_FAULT);
-      result = MOTOR_ERROR_RUNNING;
-    } else {
-      motorStopTimer();
-      motorMode &= kReverse | kEnded;
-      if (on) {
-        motorShow(motorPosition());
-        PORTB |= 0x08;  // PWM B
-        PORTD |= 0x08;  // PWM A
-      } else {
-        motorCoilsOff();
-      }
-    }
+SHARED int8_t motorSetCoils(bool on) {
+  const Masked masked;
+  auto &motion = near(motorMotion);
+  if (motion.mode & kRunning) {
+    motorFault(MOTOR_STAT_FAULT);
+    return MOTOR_ERROR_RUNNING;
   }
-  return result;
+  motorStopTimer();
+  motion.mode &= kReverse | kEnded;
+  if (on) {
+    motorEnergise();
+  } else {
+    motorCoilsOff();
+  }
+  return 0;
 }
 
 int8_t motorHold() { return motorSetCoils(true); }

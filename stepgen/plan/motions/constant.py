@@ -10,5 +10,6 @@ MOTION = Motion(
     handler_cycles=0,
     to_clock_cycles=0,
     thinking_cycles=0,
-    masked_cycles=260,
+    limit_cycles=0,
+    masked_cycles=340,
 )

@@ -7,8 +7,9 @@ from stepgen.plan.isr import Motion
 MOTION = Motion(
     kind="update-events",
     watches_clock=True,
-    handler_cycles=385,
-    to_clock_cycles=21,
-    thinking_cycles=74,
-    masked_cycles=380,
+    handler_cycles=540,
+    to_clock_cycles=61,
+    thinking_cycles=69,
+    limit_cycles=40,
+    masked_cycles=500,
 )
