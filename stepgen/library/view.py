@@ -16,6 +16,7 @@ from stepgen.library.api_view import (
 from stepgen.library.hot_view import THINK_BIT
 from stepgen.library.motor_view import MotorView, Named, module_name, motor_view
 from stepgen.library.prose import paragraph, takes, title
+from stepgen.library.sharing import sharers
 from stepgen.library.text import c_comment, frequency
 from stepgen.plan.model import Plan
 
@@ -51,6 +52,7 @@ class LibraryView:
     setting_macro: str
     think_bit: int
     timing_name: str
+    sharers: str
     motors: tuple[MotorView, ...]
     keywords: tuple[Named, ...]
     names: str
@@ -62,7 +64,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
     Return everything that the templates print about *plan*.
     """
     library = plan.library
-    motors = tuple(motor_view(motor, plan.board) for motor in plan.motors)
+    motors = tuple(motor_view(motor, plan) for motor in plan.motors)
     names = " and ".join(motor.name for motor in motors)
     sentence = library.sentence or f"Turns {names} from a timer interrupt while the sketch goes on."
     f_cpu = plan.board.f_cpu_hz
@@ -92,6 +94,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         setting_macro=_setting_macro(plan),
         think_bit=THINK_BIT,
         timing_name=module_name(plan.motors[0].timing.kind),
+        sharers=sharers(plan),
         motors=motors,
         keywords=_keywords(plan),
         names=names,
