@@ -4,7 +4,7 @@ The view of enables that two stacked shields share: who needs them, and what use
 
 from dataclasses import dataclass
 
-from stepgen.library.text import hexadecimal, listed
+from stepgen.library.text import comment_lines, hexadecimal, listed
 from stepgen.plan.model import MotorPlan, Plan
 
 
@@ -31,12 +31,17 @@ def need_of(motor: MotorPlan, plan: Plan) -> Need | None:
     return Need(hexadecimal(mask), hexadecimal(~mask & 0xFF), listed(others))
 
 
-def sharers(plan: Plan) -> str:
+def needs_comment(plan: Plan) -> tuple[str, ...]:
     """
-    Return whose bit is which, such as ``0x01 lower, 0x02 upper``; empty if no enables are shared.
+    Return what the variable of all needs is, as lines of a comment; none if no enables are shared.
     """
-    return ", ".join(
-        f"{hexadecimal(1 << index)} {name}" for index, name in enumerate(_sharers(plan))
+    names = _sharers(plan)
+    bits = ", ".join(f"{hexadecimal(1 << index)} {name}" for index, name in enumerate(names))
+    return comment_lines(
+        f"Which motors need the enables that both shields share, a bit for each: {bits}. The "
+        "enables are HIGH as long as one of them does."
+        if names
+        else ""
     )
 
 

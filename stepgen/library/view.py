@@ -16,7 +16,7 @@ from stepgen.library.api_view import (
 from stepgen.library.hot_view import THINK_BIT
 from stepgen.library.motor_view import MotorView, Named, module_name, motor_view
 from stepgen.library.prose import paragraph, takes, title
-from stepgen.library.sharing import sharers
+from stepgen.library.sharing import needs_comment
 from stepgen.library.text import c_comment, frequency
 from stepgen.plan.model import Plan
 
@@ -52,7 +52,7 @@ class LibraryView:
     setting_macro: str
     think_bit: int
     timing_name: str
-    sharers: str
+    needs_comment: tuple[str, ...]
     motors: tuple[MotorView, ...]
     keywords: tuple[Named, ...]
     names: str
@@ -94,7 +94,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         setting_macro=_setting_macro(plan),
         think_bit=THINK_BIT,
         timing_name=module_name(plan.motors[0].timing.kind),
-        sharers=sharers(plan),
+        needs_comment=needs_comment(plan),
         motors=motors,
         keywords=_keywords(plan),
         names=names,
