@@ -116,7 +116,8 @@ def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
 
 
 def _wires(drive: CoilDrive) -> Iterable[str]:
-    roles = {"": drive.wires, ", enable": drive.enables, ", stays LOW": drive.quiet}
+    enable = ", enable of two shields" if drive.shared_enables else ", enable"
+    roles = {"": drive.wires, enable: drive.enables, ", stays LOW": drive.quiet}
     for role, wires in roles.items():
         for wire in wires:
             yield f"{wire.signal}: {wire.pin.label} ({wire.pin.bit.name}){role}"

@@ -4,11 +4,12 @@ The view of one motor: names, masks and numbers as finished text.
 
 from dataclasses import dataclass
 
-from stepgen.devices import Board
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
 from stepgen.library.kernel_view import Bits, KernelView, bit_groups, kernel_view
-from stepgen.library.prose import isr_contract, rest_comment, summary, wiring
-from stepgen.plan.model import MotorPlan
+from stepgen.library.prose import isr_contract, release_comment, rest_comment, summary, wiring
+from stepgen.library.sharing import Need, need_of, sharing_note
+from stepgen.library.text import comment_lines
+from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.timings.fast_pwm import PRESCALERS
 
 _BYTE_MAX = 0xFF
@@ -66,6 +67,7 @@ class MotorView:
     summary: str
     wiring: tuple[str, ...]
     rest_comment: str
+    release_comment: tuple[str, ...]
     turns: Turns | None
     kernel_name: str
     timing_name: str
@@ -79,6 +81,7 @@ class MotorView:
     state: str
     variables: tuple[Named, ...]
     releases: bool
+    need: Need | None
     enables: tuple[Bits, ...]
     released: tuple[Bits, ...]
     low_at_start: tuple[Bits, ...]
@@ -102,18 +105,21 @@ class MotorView:
     turn_text: str
 
 
-def motor_view(motor: MotorPlan, board: Board) -> MotorView:
+def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
     """
-    Return everything that the templates print about *motor*.
+    Return everything that the templates print about *motor* of *plan*.
     """
-    storage, mcu = motor.storage, board.mcu
+    storage, board, drive = motor.storage, plan.board, motor.drive
+    mcu, need = board.mcu, need_of(motor, plan)
+    lows = [wire for wire in drive.every_wire if not (need and wire in drive.enables)]
     fits = max(motor.elapsed_cycles) <= _BYTE_MAX
     return MotorView(
         name=motor.name,
         title=motor.name[0].upper() + motor.name[1:],
         summary=summary(motor),
-        wiring=wiring(motor, board),
-        rest_comment=rest_comment(motor),
+        wiring=(*wiring(motor, board), *comment_lines(sharing_note(motor, need))),
+        rest_comment=rest_comment(motor, need),
+        release_comment=release_comment(need),
         turns=_turns(motor),
         kernel_name=motor.kernel.kind,
         timing_name=module_name(motor.timing.kind),
@@ -127,10 +133,11 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
         state=storage.state.name,
         variables=_variables(motor),
         releases=motor.releases_at_rest,
-        enables=bit_groups(motor.drive.enables, mcu),
-        released=bit_groups(motor.drive.released, mcu),
-        low_at_start=bit_groups(motor.drive.every_wire, mcu),
-        outputs=bit_groups(motor.drive.every_wire, mcu),
+        need=need,
+        enables=bit_groups(drive.enables, mcu),
+        released=bit_groups(drive.released, mcu),
+        low_at_start=bit_groups(tuple(lows), mcu),
+        outputs=bit_groups(drive.every_wire, mcu),
         linkage="SHARED" if motor.motion.watches_clock else "INLINE",
         object=f"near({motor.name}Motion)" if motor.motion.watches_clock else f"{motor.name}Motion",
         elapsed_type="uint8_t" if fits else "uint16_t",
@@ -147,7 +154,7 @@ def motor_view(motor: MotorPlan, board: Board) -> MotorView:
         rare=instruction_lines(motor.hot_path.boundary),
         operands=operand_lines(motor),
         wires=tuple(
-            Named(wire.signal, wire.pin.label, wire.pin.bit.name) for wire in motor.drive.every_wire
+            Named(wire.signal, wire.pin.label, wire.pin.bit.name) for wire in drive.every_wire
         ),
         example_speed_sps=_EXAMPLE_SPEED_SPS,
         turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",

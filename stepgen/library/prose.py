@@ -3,6 +3,7 @@ Sentences about a plan, for comments and documents: what is wired where, and who
 """
 
 from stepgen.devices import Board
+from stepgen.library.sharing import Need, sharing_rule
 from stepgen.library.text import comment_lines, frequency, listed
 from stepgen.plan.coils import CoilDrive
 from stepgen.plan.model import MotorPlan, Plan
@@ -102,13 +103,29 @@ def _pwm(motor: MotorPlan, board: Board) -> str:
     )
 
 
-def rest_comment(motor: MotorPlan) -> str:
+def rest_comment(motor: MotorPlan, need: Need | None) -> str:
     """
     Return what the coils do at the end of a move.
     """
+    if motor.releases_at_rest and need:
+        return (
+            "One interval after the last step the coils go off,\n"
+            f"// unless {need.other} needs the current."
+        )
     if motor.releases_at_rest:
         return "At its end the coils go off one interval after the last step."
     return "At its end the coils stay on and hold the position."
+
+
+def release_comment(need: Need | None) -> tuple[str, ...]:
+    """
+    Return what the function that releases the motor does, as lines of a comment.
+    """
+    unless = f", unless {need.other} needs the current" if need else ""
+    return comment_lines(
+        f"Switches the coils off, so that the shaft turns freely{unless}. Returns 0, or "
+        "MOTOR_ERROR_RUNNING."
+    )
 
 
 def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
@@ -135,9 +152,10 @@ def takes(plan: Plan) -> tuple[str, ...]:
         f"{_pwm(motor, plan.board)}."
         for motor in plan.motors
     ]
+    rows.append(sharing_rule(plan))
     rows.extend(port_rule(motor, plan.board) for motor in plan.motors)
     rows.append("`GPIOR0`, `GPIOR1` and `GPIOR2`, which the Arduino core does not use.")
-    return tuple(dict.fromkeys(rows))
+    return tuple(dict.fromkeys(filter(None, rows)))
 
 
 def paragraph(plan: Plan) -> str:

@@ -16,6 +16,7 @@ from stepgen.library.api_view import (
 from stepgen.library.hot_view import THINK_BIT
 from stepgen.library.motor_view import MotorView, Named, module_name, motor_view
 from stepgen.library.prose import paragraph, takes, title
+from stepgen.library.sharing import needs_comment
 from stepgen.library.text import c_comment, frequency
 from stepgen.plan.model import Plan
 
@@ -50,6 +51,7 @@ class LibraryView:
     motion_names: tuple[str, ...]
     think_bit: int
     timing_name: str
+    needs_comment: tuple[str, ...]
     motors: tuple[MotorView, ...]
     keywords: tuple[Named, ...]
     names: str
@@ -61,7 +63,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
     Return everything that the templates print about *plan*.
     """
     library = plan.library
-    motors = tuple(motor_view(motor, plan.board) for motor in plan.motors)
+    motors = tuple(motor_view(motor, plan) for motor in plan.motors)
     names = " and ".join(motor.name for motor in motors)
     sentence = library.sentence or f"Turns {names} from a timer interrupt while the sketch goes on."
     f_cpu = plan.board.f_cpu_hz
@@ -90,6 +92,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
         think_bit=THINK_BIT,
         timing_name=module_name(plan.motors[0].timing.kind),
+        needs_comment=needs_comment(plan),
         motors=motors,
         keywords=_keywords(plan),
         names=names,

@@ -5,6 +5,7 @@ How steps reach the motor: the place in the coil table, the current, and what th
 from dataclasses import dataclass, field
 
 from stepgen.reference.sequences import Pattern
+from stepgen.reference.sharing import Need
 from stepgen.reference.stimuli import Edge, EdgeKind
 
 _INT32_HALF = 1 << 31
@@ -24,19 +25,21 @@ class Axis:
 
     Args:
         phases: The coil table.
-        coils_off: The pattern without current.
+        released: What the wires show in each phase while the motor needs no current.
         position: Steps made since Init, int32.
         phase: The place in the table.
-        coils_on: Whether the coils get current.
+        coils_on: Whether the motor needs current.
         edges: The edges nobody has taken yet.
+        needs: When that changed, each time so far.
     """
 
     phases: tuple[Pattern, ...]
-    coils_off: Pattern
+    released: tuple[Pattern, ...]
     position: int = 0
     phase: int = 0
     coils_on: bool = False
     edges: list[Edge] = field(default_factory=list)
+    needs: list[Need] = field(default_factory=list)
 
     def step(self, cycle: int, direction: int, call_index: int) -> None:
         """
@@ -46,21 +49,30 @@ class Axis:
         self.phase = (self.phase + direction) % len(self.phases)
         self._emit(cycle, EdgeKind.STEP, call_index)
 
-    def switch(self, cycle: int, *, on: bool, call_index: int) -> None:
+    def switch(
+        self, cycle: int, *, on: bool, call_index: int, served_cycle: int | None = None
+    ) -> None:
         """
         Switch the current on or off; an edge only if it was not so.
+
+        An interrupt does so at its *served_cycle*; what a call does is done at its *cycle*.
         """
         if on != self.coils_on:
             self.coils_on = on
+            self.needs.append(Need(cycle if served_cycle is None else served_cycle, on))
             self._emit(cycle, EdgeKind.ENERGISE if on else EdgeKind.COILS_OFF, call_index)
 
     def init(self, cycle: int, call_index: int) -> None:
         """
         Go to the state after Init: no current, position 0, phase 0.
         """
+        shown = self.released[self.phase]
         self.position = 0
         self.phase = 0
-        self.switch(cycle, on=False, call_index=call_index)
+        if self.coils_on:
+            self.switch(cycle, on=False, call_index=call_index)
+        elif self.released[0] != shown:
+            self._emit(cycle, EdgeKind.COILS_OFF, call_index)
 
     def take_edges(self) -> list[Edge]:
         """
@@ -70,5 +82,5 @@ class Axis:
         return edges
 
     def _emit(self, cycle: int, kind: EdgeKind, call_index: int) -> None:
-        pattern = self.phases[self.phase] if self.coils_on else self.coils_off
+        pattern = (self.phases if self.coils_on else self.released)[self.phase]
         self.edges.append(Edge(cycle, pattern, self.position, kind, call_index))

@@ -123,4 +123,9 @@ class Engine:
         """
         self.pace.stop()
         if self.motion is not None and self.facts.at_rest == "release":
-            self.axis.switch(deadline, on=False, call_index=self.motion.call_index)
+            self.axis.switch(
+                deadline,
+                on=False,
+                call_index=self.motion.call_index,
+                served_cycle=self.pace.service_cycle(deadline),
+            )

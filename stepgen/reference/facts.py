@@ -2,7 +2,7 @@
 What the model is told about a motor and about the chip that drives it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -24,6 +24,7 @@ class MotorFacts:
         minimum_cycles: The smallest virtual value that is accepted, 4 to 65535 * 1024.
         at_rest: Whether the coils stay on when the motor stops.
         motion: Whether its library has update events.
+        shares_enables: Whether the wires that switch its coils off are another motor's too.
     """
 
     phases: tuple[Pattern, ...]
@@ -31,10 +32,30 @@ class MotorFacts:
     minimum_cycles: int
     at_rest: Literal["hold", "release"]
     motion: MotionKind = "constant"
+    shares_enables: bool = False
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:
             raise ValueError(f"minimum_cycles = {self.minimum_cycles} is out of range")
+
+    @property
+    def released(self) -> tuple[Pattern, ...]:
+        """
+        Return what the wires show in each phase while the motor needs no current.
+
+        Shared enables show what `stepgen.reference.sharing` says. The other wires then keep the
+        phase, since the coils may have current all the same.
+        """
+        if not self.shares_enables:
+            return (self.coils_off,) * len(self.phases)
+        kept = tuple(not care for care in self.coils_off.care)
+        return tuple(
+            Pattern(_only(phase.driven, kept), _only(phase.care, kept)) for phase in self.phases
+        )
+
+
+def _only(wires: Iterable[bool], kept: Iterable[bool]) -> tuple[bool, ...]:
+    return tuple(wire and keep for wire, keep in zip(wires, kept, strict=True))
 
 
 def served_at_once(deadline_cycle: int) -> int:

@@ -13,6 +13,7 @@ from stepgen.reference.engine import Engine
 from stepgen.reference.facts import MotorFacts, ServiceCycle, served_at_once
 from stepgen.reference.notices import CallbackMade
 from stepgen.reference.pace import Pace
+from stepgen.reference.sharing import Need
 from stepgen.reference.stimuli import (
     Call,
     Callbacks,
@@ -58,7 +59,7 @@ class MotorModel:
         position: int = 0,
     ) -> None:
         self._facts = facts
-        self._axis = Axis(facts.phases, facts.coils_off, wrapped_int32(position))
+        self._axis = Axis(facts.phases, facts.released, wrapped_int32(position))
         self._engine = Engine(facts, self._axis, Pace(service_cycle))
         self._notices = self._engine.notices
         self._now_cycle = 0
@@ -121,6 +122,13 @@ class MotorModel:
         Return the code of each call so far (SetSpeed, Hold, Release, Init), in order.
         """
         return tuple(self._codes)
+
+    @property
+    def needs(self) -> tuple[Need, ...]:
+        """
+        Return each change so far of whether the motor needs current; it begins without.
+        """
+        return tuple(self._axis.needs)
 
     @property
     def callbacks(self) -> tuple[CallbackMade, ...]:

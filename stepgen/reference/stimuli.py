@@ -150,7 +150,8 @@ class Edge:
     One write of the wires.
 
     Every step is an edge, also where an own table repeats a pattern; the coils going on or off
-    is one only where it changes their state.
+    is one only where it changes their state, or where Init turns wires of a motor without current
+    back to phase 0.
 
     Args:
         deadline_cycle: When the timer sets TOV, or the commit of the call that causes it.

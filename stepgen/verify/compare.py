@@ -22,7 +22,9 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     """
     result = Comparison(subject.name)
     runs = scene.trace.runs(subject.vector)
-    edges = Oracle(subject, index, scene, runs).predict(result)
+    oracle = Oracle(subject, index, scene, runs)
+    edges = oracle.predict(result)
+    result.needs = oracle.needs
     _compare_steps(subject, scene, runs, edges, result)
     _compare_calls(subject, scene, runs, edges, result)
     _compare_strangers(subject, scene, runs, result)
@@ -65,7 +67,7 @@ def _report_missing(
     """
     Report the steps of the model for which there was no interrupt.
     """
-    last = scene.until_cycle - _grace(scene)
+    last = scene.until_cycle - grace_cycles(scene)
     for edge in edges:
         cycle = edge.deadline_cycle
         if edge.kind is EdgeKind.STEP and cycle not in deadlines and cycle < last:
@@ -89,7 +91,7 @@ def _compare_edge(
         result.jitter_cycles = max(result.jitter_cycles, jitter)
 
 
-def _grace(scene: Scene) -> int:
+def grace_cycles(scene: Scene) -> int:
     """
     Return how long after its deadline a step at the very end of a trace may still come.
     """
@@ -155,7 +157,10 @@ def _compare_calls(
 def _compare_strangers(subject: Subject, scene: Scene, runs: list[Run], result: Comparison) -> None:
     """
     Report changes of the motor's wires outside its interrupt and outside the library's calls.
+
+    Wires that it shares with another motor are judged in `stepgen.verify.shared_pins`.
     """
+    own = subject.own_masks
     windows = (
         [(run.entered, run.left) for run in runs],
         [(answer.begin_cycle, answer.end_cycle) for answer in scene.answers],
@@ -164,7 +169,7 @@ def _compare_strangers(subject: Subject, scene: Scene, runs: list[Run], result: 
     for state in scene.trace.ports:
         changed = held.get(state.port, 0) ^ state.value
         held[state.port] = state.value
-        if not changed & subject.masks.get(state.port, 0) or not scene.answers:
+        if not changed & own.get(state.port, 0) or not scene.answers:
             continue
         inside = any(_is_within(state.cycle, kind) for kind in windows)
         if not inside and state.cycle > scene.answers[0].begin_cycle:

@@ -9,6 +9,7 @@ from stepgen.spec import LoadedSpec
 from stepgen.verify.bench import Answer, Call, CallKind, watched_registers
 from stepgen.verify.compare import Scene, compare
 from stepgen.verify.scenarios import BACK, DRIVE
+from stepgen.verify.shared_pins import compare_shared
 from stepgen.verify.simavr import Machine
 from stepgen.verify.subject import Subject, subjects
 from stepgen.verify.trace import Trace
@@ -34,7 +35,9 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
         trace = Trace(machine.events(), plan.board.mcu)
         until = machine.cycle
         findings = []
-        for index, subject in enumerate(subjects(loaded, plan)):
+        results = []
+        motors = subjects(loaded, plan)
+        for index, subject in enumerate(motors):
             answers = _calls(trace, subject, index, plan)
             if not answers:
                 findings.append(f"{subject.name}: the example never starts it")
@@ -42,6 +45,8 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
             findings.extend(f"{subject.name}: {finding}" for finding in result.findings)
             if not result.steps:
                 findings.append(f"{subject.name}: the example makes no step")
+            results.append(result)
+        findings.extend(compare_shared(motors, results, Scene(trace, (), plan, until)))
     return tuple(findings)
 
 

@@ -9,6 +9,7 @@ from enum import IntEnum
 
 from stepgen.plan.model import Plan
 from stepgen.reference.integer import MotorModel
+from stepgen.reference.sharing import Need
 from stepgen.reference.stimuli import (
     Callbacks,
     ClockOn,
@@ -41,6 +42,7 @@ class Comparison:
         jitter_cycles: The latest edge, counted from its deadline.
         longest_isr_cycles: The longest run of its step interrupt.
         isr_cycles: All runs together.
+        needs: When the motor needs current, as the model says.
     """
 
     motor: str
@@ -49,6 +51,7 @@ class Comparison:
     jitter_cycles: int = 0
     longest_isr_cycles: int = 0
     isr_cycles: int = 0
+    needs: tuple[Need, ...] = ()
 
     def report(self, finding: str) -> None:
         """
@@ -143,6 +146,13 @@ class Oracle:
                     self._compare_position(cycle, answer, result)
         self._advance(self._scene.until_cycle)
         return self._edges
+
+    @property
+    def needs(self) -> tuple[Need, ...]:
+        """
+        Return when the motor needs current, as far as the model has come.
+        """
+        return self._model.needs
 
     def _service_cycle(self, deadline: int) -> int:
         place = bisect_left(self._raised, deadline)

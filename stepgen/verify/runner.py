@@ -10,6 +10,7 @@ from stepgen.spec import LoadedSpec
 from stepgen.verify.bench import Answer, Bench, Call, Loop
 from stepgen.verify.compare import Comparison, Scene, compare
 from stepgen.verify.scenarios import Scenario
+from stepgen.verify.shared_pins import compare_shared
 from stepgen.verify.subject import subjects
 from stepgen.verify.trace import Trace
 
@@ -22,6 +23,7 @@ class Outcome:
     Args:
         scenario: What was asked.
         comparisons: How each motor did.
+        shared_findings: What differs from the model at pins that motors share.
         masked_cycles: Longest stretch with interrupts off within a call of the library.
         stack_bytes: Most stack that a step interrupt took.
         trace: Everything that was recorded.
@@ -30,6 +32,7 @@ class Outcome:
 
     scenario: Scenario
     comparisons: tuple[Comparison, ...]
+    shared_findings: tuple[str, ...]
     masked_cycles: int
     stack_bytes: int
     trace: Trace
@@ -40,11 +43,12 @@ class Outcome:
         """
         Return what differs from the model, with the motor's name before it.
         """
-        return tuple(
+        of_motors = tuple(
             f"{comparison.motor}: {finding}"
             for comparison in self.comparisons
             for finding in comparison.findings
         )
+        return of_motors + self.shared_findings
 
 
 def run_scenario(loaded: LoadedSpec, plan: Plan, elf: Path, scenario: Scenario) -> Outcome:
@@ -65,9 +69,11 @@ def run_scenario(loaded: LoadedSpec, plan: Plan, elf: Path, scenario: Scenario) 
         answers = tuple(bench.answers)
         scene = Scene(trace, answers, plan, bench.machine.cycle)
         motors = subjects(loaded, plan)
+        comparisons = tuple(compare(motor, i, scene) for i, motor in enumerate(motors))
         return Outcome(
             scenario=scenario,
-            comparisons=tuple(compare(motor, i, scene) for i, motor in enumerate(motors)),
+            comparisons=comparisons,
+            shared_findings=tuple(compare_shared(motors, comparisons, scene)),
             masked_cycles=_longest_mask(trace, answers),
             stack_bytes=_stack_bytes(bench, [motor.vector for motor in motors]),
             trace=trace,

@@ -36,11 +36,11 @@ def port_rows(plan: Plan, outcome: Outcome) -> Iterator[Row]:
     """
     Yield cycle, milliseconds, cycles since the row before, port and wires for each change.
     """
-    wires = {
-        wire.pin.bit: f"{motor.name} {wire.signal}"
+    wires = [
+        (wire.pin.bit, f"{motor.name} {wire.signal}")
         for motor in plan.motors
         for wire in motor.drive.every_wire
-    }
+    ]
     held: dict[str, int] = {}
     first = outcome.answers[0].begin_cycle if outcome.answers else 0
     before = first
@@ -49,7 +49,7 @@ def port_rows(plan: Plan, outcome: Outcome) -> Iterator[Row]:
         held[state.port] = state.value
         moved = [
             f"{name} {'on' if state.value >> bit.bit & 1 else 'off'}"
-            for bit, name in wires.items()
+            for bit, name in wires
             if bit.port == state.port and changed >> bit.bit & 1
         ]
         if moved and state.cycle >= first:

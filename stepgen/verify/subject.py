@@ -4,7 +4,8 @@ What verification knows of a motor, taken from the spec and the board, not from 
 The oracle must not share the planner's tables: wires and phases are read here once more.
 """
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -30,8 +31,9 @@ class Subject:
         facts: What the reference model needs.
         wires: The port bit of each wire, in the model's order.
         vector: Number of the interrupt that makes its steps.
-        is_shield: Whether its wires are the motor shield's enables and directions.
         tccrb: Data address of the register that holds its clock select; tcnt likewise.
+        is_shield: Whether its wires are the motor shield's enables and directions.
+        shared: Those of its wires that are another motor's too.
     """
 
     name: str
@@ -41,16 +43,21 @@ class Subject:
     tccrb: int
     tcnt: int
     is_shield: bool
+    shared: tuple[PortBit, ...] = ()
 
     @property
     def masks(self) -> dict[str, int]:
         """
         Return the bits of its wires on each port, by the port's letter.
         """
-        masks: dict[str, int] = {}
-        for bit in self.wires:
-            masks[bit.port] = masks.get(bit.port, 0) | 1 << bit.bit
-        return masks
+        return _masks(self.wires)
+
+    @property
+    def own_masks(self) -> dict[str, int]:
+        """
+        Return the same without the wires that it shares.
+        """
+        return _masks(bit for bit in self.wires if bit not in self.shared)
 
     def pattern(self, ports: dict[str, int]) -> tuple[bool, ...]:
         """
@@ -63,25 +70,36 @@ def subjects(loaded: LoadedSpec, plan: Plan) -> tuple[Subject, ...]:
     """
     Return the motors of *loaded*; the planner's choice of timer and range comes from *plan*.
     """
+    wires = {name: _wires(motor.drive, plan.board) for name, motor in loaded.spec.motors.items()}
+    users = Counter(bit for bits in wires.values() for bit in bits)
     found = []
     for name, planned in zip(loaded.spec.motors, plan.motors, strict=True):
         motor = loaded.spec.motors[name]
         timer = planned.timing.timer
+        shared = tuple(bit for bit in wires[name] if users[bit] > 1)
         found.append(
             Subject(
                 name=name,
-                facts=_facts(motor, plan),
-                wires=_wires(motor.drive, plan.board),
+                facts=_facts(motor, plan, shares_enables=bool(shared)),
+                wires=wires[name],
                 vector=plan.board.mcu.vector(planned.timing.vector).number,
                 tccrb=timer.tccrb.address,
                 tcnt=timer.tcnt.address,
                 is_shield=motor.drive.kind == "motor-shield",
+                shared=shared,
             )
         )
     return tuple(found)
 
 
-def _facts(motor: Motor, plan: Plan) -> MotorFacts:
+def _masks(bits: Iterable[PortBit]) -> dict[str, int]:
+    masks: dict[str, int] = {}
+    for bit in bits:
+        masks[bit.port] = masks.get(bit.port, 0) | 1 << bit.bit
+    return masks
+
+
+def _facts(motor: Motor, plan: Plan, *, shares_enables: bool) -> MotorFacts:
     drive: Any = motor.drive
     kind: Literal["four-wire", "motor-shield"] = drive.kind
     motion_spec: Any = motor.motion
@@ -93,6 +111,7 @@ def _facts(motor: Motor, plan: Plan) -> MotorFacts:
         minimum_cycles=plan.minimum_period_cycles,
         at_rest=motor.at_rest,
         motion=motion,
+        shares_enables=shares_enables,
     )
 
 

@@ -13,6 +13,7 @@ from stepgen.verify.firmware import build_firmware
 from stepgen.verify.report import MotorFigures, SpecReport
 from stepgen.verify.runner import Outcome, is_asleep, run_scenario
 from stepgen.verify.scenarios import Scenario, standard_scenarios
+from stepgen.verify.sharing_scenarios import sharing_scenarios
 from stepgen.verify.toolchain import Compiler
 from stepgen.verify.update_scenarios import update_scenarios
 
@@ -55,7 +56,7 @@ def verify_spec(
         )
         for motor in plan.motors
     }
-    scenarios = (*standard_scenarios(plan), *update_scenarios(plan))
+    scenarios = (*standard_scenarios(plan), *update_scenarios(plan), *sharing_scenarios(plan))
     for scenario in track(scenarios):
         _judge(run_scenario(loaded, plan, firmware.bench, scenario), plan, report)
     findings = run_example(loaded, plan, firmware.example)

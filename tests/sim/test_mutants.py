@@ -120,6 +120,27 @@ MUTANTS = (
         spec="uno_variable_speed",
     ),
     Mutant(
+        "a release that does not look at who else needs the shared enables",
+        "src/library.cpp.j2",
+        "if (enablesNeeded) return;",
+        "",
+        spec="mega_stacked_shields",
+    ),
+    Mutant(
+        "an init that takes the shared enables from a motor that holds",
+        "src/library.cpp.j2",
+        "    {{ motor.name }}CoilsOff();",
+        "    enablesNeeded = 0; {{ motor.name }}CoilsOff();",
+        spec="mega_stacked_shields",
+    ),
+    Mutant(
+        "an init that leaves a motor without current in the phase where it was",
+        "src/library.cpp.j2",
+        "{{ port.clear(motor.low_at_start) | block(4) }}",
+        "",
+        spec="mega_stacked_shields",
+    ),
+    Mutant(
         "a millisecond limit that is one step late",
         "motions/constant.j2",
         "motion.endMillis) < 0)",

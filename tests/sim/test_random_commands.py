@@ -25,6 +25,8 @@ KINDS = (
     "uno_mixed_ports",
     "mega_pan_tilt",
     "mega_uln2003_port_g",
+    "mega_stacked_shields",
+    "mega_stacked_shields_variable",
     "uno_variable_speed",
 )
 WEIGHTS = {

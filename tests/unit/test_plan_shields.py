@@ -121,26 +121,31 @@ def test_two_shields_have_their_example() -> None:
 
 
 @pytest.mark.parametrize("order", [("motor-shield", SHARING), (SHARING, "motor-shield")])
-def test_shared_enables_are_refused_for_now(refused: Refused, order: tuple[str, str]) -> None:
+def test_shields_in_full_steps_share_their_enables(drives: Drives, order: tuple[str, str]) -> None:
     """
-    One fault, whichever of the shields the spec names first, and the way out.
+    Whichever of the shields the spec names first: D3 and D11 are both motors', the rest is not.
     """
-    (reason,) = refused(*order)
+    first, second = drives(*order)
 
-    assert reason == (
-        "two shields that share their enables are not supported yet: give the stacked one "
-        "enables of its own, `enables: [..]`"
-    )
+    assert first.shared_enables
+    assert second.shared_enables
+    assert set(first.every_wire) & set(second.every_wire) == set(first.enables)
+    assert first.enables == second.enables == first.released
+    assert [wire.pin.label for wire in first.enables] == ["D3", "D11"]
 
 
 @pytest.mark.parametrize("sequence", ["half", "wave"])
-def test_steps_that_switch_coils_cannot_share_enables(refused: Refused, sequence: str) -> None:
+@pytest.mark.parametrize("place", [0, 1])
+def test_steps_that_switch_coils_cannot_share_enables(
+    refused: Refused, sequence: str, place: int
+) -> None:
     """
-    The enables of one motor would switch the coils of the other.
+    On either shield: the enables of one motor would switch the coils of the other.
     """
-    stacked = f"{{kind: motor-shield, stacked: true, sequence: {sequence}}}"
+    shields = ["{kind: motor-shield", "{kind: motor-shield, stacked: true"]
+    shields[place] += f", sequence: {sequence}"
 
-    (reason,) = refused("motor-shield", stacked)
+    (reason,) = refused(*(f"{shield}}}" for shield in shields))
 
     assert reason == (
         f"{sequence} steps switch the coils by the enables, which two shields share here; take "

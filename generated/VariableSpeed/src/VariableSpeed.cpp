@@ -299,14 +299,14 @@ SHARED uint16_t motorMillisLeft() {
 
 // What the events are counted by: the steps made (less those of the whole move), or millis().
 // Only while interrupts are off.
-SHARED uint32_t motorCount() {
+SHARED uint32_t motorEventClock() {
   const bool bySteps = near(motorMotion).control & MOTOR_CTRL_UPDATE_STEPS;
   return bySteps ? ~motorLeft() : millisNow();
 }
 
 // Steps or milliseconds until the next event; 0: it is due. Only while interrupts are off.
 SHARED uint16_t motorUntilEvent() {
-  const int32_t left = near(motorMotion).eventAt - motorCount();
+  const int32_t left = near(motorMotion).eventAt - motorEventClock();
   return left < 0 ? 0 : left;
 }
 
@@ -434,7 +434,7 @@ INLINE void motorStart() {
   motion.target = here + steps;
   motion.start = millisNow();
   motion.wake = motion.start;  // with the first step; then it knows when the next is due
-  motorNextEvent(motorCount());
+  motorNextEvent(motorEventClock());
   motion.status = motion.updates ? 0 : MOTOR_STAT_SPIN_FIXED;
   const uint8_t before = motion.mode;
   motion.mode = mode;

@@ -34,7 +34,7 @@ def plan(
 
     In full steps both coils always carry current, so the enables stand still and only the
     two DIR wires step. Half and wave steps switch coils off by their enables, which then must
-    not be those of another shield too.
+    not be those of another shield too. Two shields in full steps may share them.
     """
     enables = _wires("PWM", spec.enables or _ENABLES, board, faults.at("enables"))
     directions = _wires("DIR", _STACKED_DIRECTIONS if spec.stacked else _DIRECTIONS, board, faults)
@@ -43,8 +43,12 @@ def plan(
         return None
     switches = spec.sequence != "full"
     shares = _shares_enables(spec, beside)
-    if shares:
-        _refuse_to_share(spec, faults)
+    if shares and switches:
+        faults.report(
+            f"{spec.sequence} steps switch the coils by the enables, which two shields share "
+            "here; take `sequence: full`, or give the stacked one enables of its own, "
+            "`enables: [..]`"
+        )
     currents = _CURRENTS[spec.sequence]
     return CoilDrive(
         kind=spec.kind,
@@ -79,19 +83,6 @@ def _shares_enables(spec: MotorShield, beside: Sequence[KindModel]) -> bool:
     return spec.enables is None and any(
         shield.enables is None and shield.stacked != spec.stacked for shield in _shields(beside)
     )
-
-
-def _refuse_to_share(spec: MotorShield, faults: Faults) -> None:
-    way_out = "give the stacked one enables of its own, `enables: [..]`"
-    if spec.sequence != "full":
-        faults.report(
-            f"{spec.sequence} steps switch the coils by the enables, which two shields share "
-            f"here; take `sequence: full`, or {way_out}"
-        )
-    elif spec.stacked:
-        faults.report(
-            f"two shields that share their enables are not supported yet: {way_out}",
-        )
 
 
 def _wires(
