@@ -120,6 +120,13 @@ MUTANTS = (
         spec="uno_variable_speed",
     ),
     Mutant(
+        "a limit that waits for its very millisecond, which the clock may pass over",
+        "motions/update_events.j2",
+        "if (limited && now - {{ motor.name }}StartMillis >=",
+        "if (limited && now - {{ motor.name }}StartMillis ==",
+        spec="pro-mini-8mhz_28byj48",
+    ),
+    Mutant(
         "a millisecond limit that is one step late",
         "motions/constant.j2",
         "{{ motor.name }}EndMillis) < 0)",

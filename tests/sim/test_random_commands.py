@@ -26,6 +26,7 @@ KINDS = (
     "mega_pan_tilt",
     "mega_uln2003_port_g",
     "uno_variable_speed",
+    "pro-mini-8mhz_28byj48",
 )
 WEIGHTS = {
     CallKind.SET_SPEED: 60,

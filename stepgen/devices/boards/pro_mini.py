@@ -8,7 +8,7 @@ from stepgen.devices.variants import standard
 
 BOARD = Board(
     name="pro-mini",
-    title="Arduino Pro Mini (5 V)",
+    title="Arduino Pro Mini 5 V",
     mcu=atmega328p.MCU,
     f_cpu_hz=16_000_000,
     fqbn="arduino:avr:pro:cpu=16MHzatmega328",

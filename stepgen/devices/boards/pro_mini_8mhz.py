@@ -8,7 +8,7 @@ from stepgen.devices.variants import standard
 
 BOARD = Board(
     name="pro-mini-8mhz",
-    title="Arduino Pro Mini (3.3 V)",
+    title="Arduino Pro Mini 3.3 V",
     mcu=atmega328p.MCU,
     f_cpu_hz=8_000_000,
     fqbn="arduino:avr:pro:cpu=8MHzatmega328",
