@@ -62,7 +62,7 @@ def boards(
     )
 
 
-_HEADING = ("Board", "Title", "Chip", "Clock", "Flash", "RAM", "Pins", "16-bit timers")
+_HEADING = ("Board", "Title", "Chip", "Clock", "Flash", "RAM", "16-bit timers")
 
 
 def _board_row(board: Board) -> Row:
@@ -74,13 +74,13 @@ def _board_row(board: Board) -> Row:
         f"{board.f_cpu_hz / 1e6:g} MHz",
         f"{mcu.flash_bytes // _KIB} KiB",
         f"{mcu.ram_bytes // _KIB} KiB",
-        str(len(board.pins)),
         ", ".join(str(timer.number) for timer in mcu.timers16),
     )
 
 
 def _pin_rows(board: Board) -> Iterable[Row]:
-    return ((pin.label, pin.bit.name, ", ".join(pin.uses)) for pin in board.pins)
+    yield from ((pin.label, pin.bit.name, ", ".join(pin.uses)) for pin in board.pins)
+    yield from ((label, "-", "analog input only") for label in board.analog_inputs)
 
 
 def _port_rows(board: Board) -> Iterable[Row]:

@@ -122,7 +122,7 @@ class ClockWish:
     @property
     def clock(self) -> Clock:
         """
-        Return the clock, an Uno's or Mega's with 200 steps in a turn for what was not given.
+        Return the clock, 16 MHz with 200 steps in a turn for what was not given.
         """
         return Clock(
             Clock.f_cpu_hz if self.f_cpu is None else self.f_cpu,

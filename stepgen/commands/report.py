@@ -114,6 +114,8 @@ def print_tables(parts: Sequence[tuple[str, Sequence[str], Iterable[Sequence[str
     for index, (title, heading, rows) in enumerate(parts):
         table = Table(*heading, box=box.SIMPLE, show_header=bool(heading))
         table.show_edge = table.pad_edge = False
+        for column in table.columns[:1]:
+            column.no_wrap = True  # it names the row, and must be readable as a whole
         for row in rows:
             table.add_row(*row)
         if index:

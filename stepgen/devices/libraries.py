@@ -74,7 +74,9 @@ SKETCH_LIBRARIES: Mapping[str, SketchLibrary] = MappingProxyType(
         "Serial3": _usart("Serial3", "3"),
         "Servo": SketchLibrary(
             timers=(1,),
-            timers_of_mcu=MappingProxyType({"atmega2560": (5, 1, 3, 4)}),
+            timers_of_mcu=MappingProxyType(
+                dict.fromkeys(("atmega1280", "atmega2560"), (5, 1, 3, 4))
+            ),
             timer_event="COMPA",
             objects_per_timer=_SERVOS_PER_TIMER,
         ),

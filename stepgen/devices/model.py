@@ -229,6 +229,7 @@ class Board:
         variant: Folder of its ``pins_arduino.h`` in the core's ``variants``.
         core_define: What the core defines for it, such as ``ARDUINO_AVR_UNO``.
         pins: All header pins that are port bits, by number.
+        analog_inputs: Labels of header pins that only analogRead() can use: they are no port bits.
     """
 
     name: str
@@ -239,6 +240,7 @@ class Board:
     variant: str
     core_define: str
     pins: tuple[Pin, ...]
+    analog_inputs: tuple[str, ...] = ()
 
     def find_pin(self, text: str) -> Pin | None:
         """

@@ -46,8 +46,8 @@ class Clock:
     def __post_init__(self) -> None:
         if not 1 <= self.f_cpu_hz <= _LARGEST_F_CPU_HZ:
             raise StepgenError.of(
-                f"the oscillator is from 1 to {_LARGEST_F_CPU_HZ} Hz; an Uno and a Mega "
-                "have 16000000",
+                f"the oscillator is from 1 to {_LARGEST_F_CPU_HZ} Hz; most boards "
+                "have 16000000, a Pro Mini of 3.3 V has 8000000",
                 text=str(self.f_cpu_hz),
             )
         if self.clkpr not in CLKPR_DIVIDERS:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from stepgen.devices import SKETCH_LIBRARIES, Board, Pin, library_claims
+from stepgen.plan.pins import missing_pin
 
 ANALOG_WRITE = "analogWrite"
 _TAKES_PINS = ("Servo", "SoftwareSerial", "tone", ANALOG_WRITE)  # pins of the sketch's choice
@@ -64,11 +65,7 @@ def read_uses(texts: Iterable[str], board: Board, report: ReportAt) -> dict[int,
         pins = {board.find_pin(label): None for _, label in named}
         for index, label in named:
             if board.find_pin(label) is None:
-                report(
-                    index,
-                    f"the {board.title} has no pin {label[:20]}; "
-                    f"`stepgen boards {board.name}` lists them",
-                )
+                report(index, missing_pin(label, board))
         known = tuple(pin for pin in pins if pin)
         if len(known) == len(pins):
             index = parts[0][0]

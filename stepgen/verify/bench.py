@@ -32,7 +32,10 @@ class Loop(IntEnum):
 
 class CallKind(IntEnum):
     """
-    Which function of a motor is called.
+    Which function is called: of a motor or, from 13 on, of the library or avr-libc.
+
+    DIVIDE_CLOCK sets CLKPR: the clock is divided by 2 to the power of *control*. The last two
+    give their result as the position.
     """
 
     SET_SPEED = 1
@@ -42,6 +45,9 @@ class CallKind(IntEnum):
     INIT = 5
     UPDATE_CHECK = 6
     CALLBACKS = 7
+    DIVIDE_CLOCK = 13
+    TOP_PER_SECOND = 14
+    CLOCKS_PER_SECOND = 15
 
 
 @dataclass(frozen=True)

@@ -195,8 +195,9 @@ class Oracle:
         for start in trace.clock_starts(subject.tccrb, subject.tcnt):
             clock_on = ClockOn(start.cycle, start.prescaler, start.tcnt)
             yield start.cycle, _Order.CLOCK, _Told(clock_on)
-        vector = self._scene.plan.board.mcu.vector("TIMER0_OVF_vect").number
-        for cycle, millis in trace.millis_ticks(vector):
+        board = self._scene.plan.board
+        vector = board.mcu.vector("TIMER0_OVF_vect").number
+        for cycle, millis in trace.millis_ticks(vector, board.f_cpu_hz):
             yield cycle, _Order.MILLIS, _Told(MillisTick(cycle, millis))
 
 

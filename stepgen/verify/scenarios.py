@@ -76,7 +76,17 @@ def _standard(plan: Plan, fastest: int) -> Iterator[tuple[str, Loop, list[Action
     yield "stop at every point of a period", Loop.BUSY, list(_stops_everywhere(motors, fastest))
     yield "change at every point of a period", Loop.BUSY, list(_changes_everywhere(motors, fastest))
     yield "millisecond end points", Loop.BUSY, list(_millis_ends(motors, fastest))
-    yield "millisecond end points at slow rates", Loop.SLEEP, list(_slow_millis_ends(motors))
+    second = plan.board.f_cpu_hz
+    yield (
+        "every short millisecond end point",
+        Loop.BUSY,
+        list(_short_millis_ends(motors, fastest, second // 1000)),
+    )
+    yield (
+        "millisecond end points at slow rates",
+        Loop.SLEEP,
+        list(_slow_millis_ends(motors, second)),
+    )
     yield "refused calls", Loop.BUSY, list(_refusals(motors, fastest, slowest))
     yield "hold and release", Loop.BUSY, list(_hold_and_release(motors, fastest))
     if len(motors) > 1:
@@ -193,18 +203,31 @@ def _millis_ends(motors: range, fastest: int) -> Iterator[Action]:
         yield _read(motor)
 
 
-def _slow_millis_ends(motors: range) -> Iterator[Action]:
+def _short_millis_ends(motors: range, fastest: int, millisecond: int) -> Iterator[Action]:
+    """
+    End after each number of milliseconds up to where the clock has passed over one: it jumps.
+
+    It leaves one out each 42 ms at 16 MHz, and every other one at 8 MHz.
+    """
+    for motor in motors:
+        for milliseconds in range(1, 16):
+            yield _speed(motor, MILLIS, fastest, milliseconds)
+            yield Wait((milliseconds + 3) * millisecond)
+            yield _read(motor)
+
+
+def _slow_millis_ends(motors: range, second: int) -> Iterator[Action]:
     """
     End far beyond 32 768 ms, and between two slow steps.
     """
     for motor in motors:
-        yield _speed(motor, MILLIS, 16_000_000, 33_500)
-        yield Wait(34 * 16_000_000)
+        yield _speed(motor, MILLIS, second, 33_500)
+        yield Wait(34 * second)
         yield _read(motor)
-        yield _speed(motor, MILLIS, 16_000_000, 1_500)
-        yield Wait(26_000_000)
+        yield _speed(motor, MILLIS, second, 1_500)
+        yield Wait(26 * second // 16)
         yield _read(motor)
-        yield Wait(16_000_000)
+        yield Wait(second)
         yield _read(motor)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from stepgen.devices import Mcu
+from stepgen.reference.core_clock import millis_after
 from stepgen.verify.simavr.events import Events, Kind
 
 _CLOCK_SELECT = 0b111
@@ -141,23 +142,12 @@ class Trace:
                 running = bool(select)
         return starts
 
-    def millis_ticks(self, vector: int) -> list[tuple[int, int]]:
+    def millis_ticks(self, vector: int, f_cpu_hz: int) -> list[tuple[int, int]]:
         """
-        Return (cycle, millis()) after each run of the core's timer 0 interrupt.
-
-        The core counts 1024 us for each overflow: 1 ms, and one more whenever the remaining
-        24 us have added up to a millisecond (wiring.c: FRACT_INC 3 of FRACT_MAX 125 at 16 MHz).
+        Return (cycle, millis()) after each run of *vector*, the core's timer 0 interrupt.
         """
-        ticks = []
-        millis = fraction = 0
-        for cycle in self._of(Kind.ISR_EXIT, vector)["cycle"].tolist():
-            millis += 1
-            fraction += 3
-            if fraction >= 125:  # noqa: PLR2004 - wiring.c
-                fraction -= 125
-                millis += 1
-            ticks.append((cycle, millis))
-        return ticks
+        ends = self._of(Kind.ISR_EXIT, vector)["cycle"].tolist()
+        return [(cycle, millis_after(count, f_cpu_hz)) for count, cycle in enumerate(ends, 1)]
 
     def commit(self, begin: int, end: int, which: int = 0) -> tuple[int, int] | None:
         """

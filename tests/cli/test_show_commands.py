@@ -58,6 +58,8 @@ def test_a_board_fits_a_pipe(stepgen: Stepgen, name: str) -> None:
         assert re.search(
             rf"^{pin.label} +{pin.bit.name} +{', '.join(pin.uses)}", run.out, re.MULTILINE
         )
+    for label in board.analog_inputs:
+        assert re.search(rf"^{label} +- +analog input only", run.out, re.MULTILINE)
     assert all(timer.ovf.name in run.out for timer in board.mcu.timers16)
 
 

@@ -11,11 +11,18 @@ from stepgen.verify.arduino_builder import build_with_ide
 from stepgen.verify.example import run_example
 from stepgen.verify.toolchain import Compiler, find_compilers
 
+STEMS = (
+    "uno_motor_shield",
+    "uno_mixed_ports",
+    "mega_pan_tilt",
+    "mega1280_two_motors",
+    "pro-mini-8mhz_28byj48",
+)
 SPECS = Path(__file__).parents[2] / "specs"
 
 
 @pytest.mark.parametrize("compiler", find_compilers(), ids=lambda compiler: compiler.name)
-@pytest.mark.parametrize("stem", ["uno_motor_shield", "uno_mixed_ports", "mega_pan_tilt"])
+@pytest.mark.parametrize("stem", STEMS)
 def test_the_example_built_by_the_ide_steps_as_the_model_says(
     stem: str, compiler: Compiler, tmp_path: Path
 ) -> None:

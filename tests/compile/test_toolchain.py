@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from stepgen.devices import boards
 from stepgen.errors import StepgenError
 from stepgen.verify import recipes
 from stepgen.verify.arduino_builder import build_with_ide
@@ -63,9 +64,9 @@ architectures=avr
 WARNING = "int unusedParameterHere(int unused) { return 1; }\n"
 
 both_compilers = pytest.mark.parametrize("compiler_name", ["gcc-5.4", "gcc-7.3"])
-both_boards = pytest.mark.parametrize(
-    "fqbn", ["arduino:avr:uno", "arduino:avr:mega:cpu=atmega2560"]
-)
+# One board of each chip and clock: what else differs is bootloader and menu.
+FQBNS = {(board.mcu.name, board.f_cpu_hz): board.fqbn for board in boards()}.values()
+each_chip = pytest.mark.parametrize("fqbn", FQBNS)
 
 UNO = Target("uno")
 
@@ -128,7 +129,7 @@ def code_of(program: Build, compiler: Compiler) -> bytes:
 
 
 @both_compilers
-@both_boards
+@each_chip
 def test_a_build_is_the_ides_byte_for_byte(
     compiler_name: str, fqbn: str, blink: Path, tmp_path: Path
 ) -> None:
@@ -146,7 +147,7 @@ def test_a_build_is_the_ides_byte_for_byte(
 
 
 @both_compilers
-@both_boards
+@each_chip
 def test_an_empty_sketch_is_smaller_than_blink(
     compiler_name: str, fqbn: str, blink: Path, tmp_path: Path
 ) -> None:
@@ -298,7 +299,7 @@ def test_a_target_has_its_name_back() -> None:
     """
     A fully qualified board name survives the way through a Target.
     """
-    for fqbn in ("arduino:avr:uno", "arduino:avr:mega:cpu=atmega2560"):
+    for fqbn in FQBNS:
         assert Target.from_fqbn(fqbn).fqbn == fqbn
 
 

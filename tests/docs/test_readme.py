@@ -17,11 +17,13 @@ from pydantic import BaseModel
 from ruamel.yaml import YAML
 
 from stepgen import api
+from stepgen.devices import Board, boards
 from stepgen.spec import Library, Motor, Spec
 from stepgen.spec.drives import KINDS as DRIVES
 from stepgen.spec.motions import KINDS as MOTIONS
 from stepgen.spec.timings import KINDS as TIMINGS
 from stepgen.spec.turns import StepsPerTurn
+from stepgen.verify.recipes import platform_dir
 from stepgen.verify.toolchain import Target, build, default_compiler
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -29,7 +31,6 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 # Commands that set up, need hours or are tested elsewhere: here only that they exist.
 NAMED_ONLY = ("make ", ". .venv/bin/activate", "stepgen matrix")
-FQBNS = {"uno": "arduino:avr:uno", "mega": "arduino:avr:mega:cpu=atmega2560"}
 
 
 def blocks(language: str) -> list[str]:
@@ -181,7 +182,7 @@ def test_every_sketch_compiles(tree: Path, sketch: str) -> None:
     built = build(
         [tree / "sketch.ino", source / f"{library}.cpp"],
         [source],
-        Target.from_fqbn(FQBNS[api.load(spec).spec.board]),
+        Target.from_fqbn(api.plan(spec).board.fqbn),
         default_compiler(),
         tree / "out",
     )
@@ -267,6 +268,22 @@ def _texts(annotation: Any) -> Iterator[str]:  # noqa: ANN401 - any type of a fi
             yield argument
         else:
             yield from _texts(argument)
+
+
+@pytest.mark.parametrize("board", boards(), ids=lambda board: board.name)
+def test_every_board_is_listed_with_its_place_in_the_ides_menus(board: Board) -> None:
+    """
+    Each board has a row with its chip, its clock, and the words of the core's boards.txt.
+    """
+    target = Target.from_fqbn(board.fqbn)
+    lines = (platform_dir() / "boards.txt").read_text(encoding="utf-8").splitlines()
+    words = dict(line.split("=", 1) for line in lines if "=" in line)
+    menu = words[f"{target.board_id}.name"]
+    if target.cpu:
+        menu += f", processor {words[f'{target.board_id}.menu.cpu.{target.cpu}']}"
+    clock = f"{board.f_cpu_hz // 1_000_000} MHz"
+
+    assert f"\n| `{board.name}` | {board.mcu.title} | {clock} | {menu} |\n" in README
 
 
 def test_every_command_of_stepgen_is_listed(tree: Path) -> None:

@@ -129,16 +129,23 @@ MUTANTS = (
     Mutant(
         "an init that takes the shared enables from a motor that holds",
         "src/library.cpp.j2",
-        "    {{ motor.name }}CoilsOff();",
-        "    enablesNeeded = 0; {{ motor.name }}CoilsOff();",
+        "  {{ motor.name }}CoilsOff();\n%% endif\n{{ port.clear",
+        "  enablesNeeded = 0; {{ motor.name }}CoilsOff();\n%% endif\n{{ port.clear",
         spec="mega_stacked_shields",
     ),
     Mutant(
         "an init that leaves a motor without current in the phase where it was",
         "src/library.cpp.j2",
-        "{{ port.clear(motor.low_at_start) | block(4) }}",
+        "{{ port.clear(motor.low_at_start) | block(2) }}",
         "",
         spec="mega_stacked_shields",
+    ),
+    Mutant(
+        "a limit that waits for its very millisecond, which the clock may pass over",
+        "motions/update_events.j2",
+        "if (gone >= motion.limit) return 0;",
+        "if (gone == motion.limit) return 0;",
+        spec="pro-mini-8mhz_28byj48",
     ),
     Mutant(
         "a millisecond limit that is one step late",

@@ -31,11 +31,12 @@ def test_each_spec_moves_its_motors_as_the_model_says(path: Path) -> None:
     assert [check for check in report.checks if not check.passed] == []
 
 
-def test_the_newer_compiler_gives_the_same_motion() -> None:
+@pytest.mark.parametrize("stem", ["uno_mixed_ports", "pro-mini-8mhz_28byj48"])
+def test_the_newer_compiler_gives_the_same_motion(stem: str) -> None:
     """
     GCC 7.3, which the Arduino IDE ships, passes every check too.
     """
-    path = next(path for path in SPECS if path.stem == "uno_mixed_ports")
+    path = next(path for path in SPECS if path.stem == stem)
 
     report = api.verify(path, compiler="gcc-7.3")
 

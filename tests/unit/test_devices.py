@@ -12,12 +12,14 @@ from stepgen.devices import Board, Mcu, PortBit, Register, Timer16
 # Where the datasheets' chapters "Alternate Port Functions" put ICPn.
 CAPTURE_INPUTS = {
     "atmega328p": {1: "PB0"},
+    "atmega1280": {1: "PD4", 3: "PE7", 4: "PL0", 5: "PL1"},
     "atmega2560": {1: "PD4", 3: "PE7", 4: "PL0", 5: "PL1"},
 }
 # Compare outputs that analogWrite() does not use, from the same chapters: the core gives the
 # Mega's PB7 to OC0A.
 OTHER_OUTPUTS: dict[str, set[tuple[int, str, str]]] = {
     "atmega328p": set(),
+    "atmega1280": {(1, "C", "PB7")},
     "atmega2560": {(1, "C", "PB7")},
 }
 

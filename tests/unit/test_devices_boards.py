@@ -9,18 +9,20 @@ import pytest
 from stepgen.devices import Board, Pin, boards, find_board
 
 # RXDn and TXDn, from the datasheets' chapters "Alternate Port Functions".
+MEGA_SERIAL_PINS = {
+    "Serial RX": "PE0",
+    "Serial TX": "PE1",
+    "Serial1 RX": "PD2",
+    "Serial1 TX": "PD3",
+    "Serial2 RX": "PH0",
+    "Serial2 TX": "PH1",
+    "Serial3 RX": "PJ0",
+    "Serial3 TX": "PJ1",
+}
 SERIAL_PINS = {
     "atmega328p": {"Serial RX": "PD0", "Serial TX": "PD1"},
-    "atmega2560": {
-        "Serial RX": "PE0",
-        "Serial TX": "PE1",
-        "Serial1 RX": "PD2",
-        "Serial1 TX": "PD3",
-        "Serial2 RX": "PH0",
-        "Serial2 TX": "PH1",
-        "Serial3 RX": "PJ0",
-        "Serial3 TX": "PJ1",
-    },
+    "atmega1280": MEGA_SERIAL_PINS,
+    "atmega2560": MEGA_SERIAL_PINS,
 }
 NOT_AN_INTERRUPT = 255
 
@@ -56,13 +58,19 @@ def test_every_pin_is_where_the_core_has_it(
 def test_labels_are_those_on_the_board(board: Board, core_numbers: dict[str, int]) -> None:
     """
     Pins that are analog inputs are labelled A0 and so on, the others by their number.
+
+    The core numbers those that are no port bits behind its last digital pin.
     """
     inputs = range(core_numbers["NUM_ANALOG_INPUTS"])
     analog = {core_numbers[f"PIN_A{number}"]: f"A{number}" for number in inputs}
+    digital = core_numbers["NUM_DIGITAL_PINS"]
 
     assert [pin.label for pin in board.pins] == [
         analog.get(pin.number, f"D{pin.number}") for pin in board.pins
     ]
+    assert board.analog_inputs == tuple(
+        label for number, label in analog.items() if number >= digital
+    )
 
 
 def test_uses_of_pins_are_those_of_the_core(
@@ -131,8 +139,11 @@ def test_every_use_is_of_a_checked_kind(board: Board) -> None:
 def test_boards_are_those_of_boards_txt(board: Board, boards_txt: dict[str, str]) -> None:
     """
     Clock, chip, variant and define are what the core's boards.txt gives for the FQBN.
+
+    Behind the board's name stands a choice in each of its menus, and no other.
     """
     package, architecture, name, *options = board.fqbn.split(":")
+    menus = {key.split(".")[2] for key in boards_txt if key.startswith(f"{name}.menu.")}
     prefixes = [name, *(f"{name}.menu.{option.replace('=', '.')}" for option in options)]
     build = {
         key.removeprefix(f"{prefix}.build."): value
@@ -141,7 +152,9 @@ def test_boards_are_those_of_boards_txt(board: Board, boards_txt: dict[str, str]
         if key.startswith(f"{prefix}.build.")
     }
 
-    assert (package, architecture, name) == ("arduino", "avr", board.name)
+    assert (package, architecture) == ("arduino", "avr")
+    assert {option.split("=")[0] for option in options} == menus
+    assert all(prefix in boards_txt for prefix in prefixes[1:])
     assert build["mcu"] == board.mcu.name
     assert build["f_cpu"] == f"{board.f_cpu_hz}L"
     assert build["variant"] == board.variant
@@ -171,6 +184,15 @@ def test_a_pin_is_found_by_all_its_names(text: str, label: str, uno: Board) -> N
 
     assert found is not None
     assert found.label == label
+
+
+def test_no_two_boards_are_the_same() -> None:
+    """
+    Names, titles and FQBNs are each board's own.
+    """
+    for field in ("name", "title", "fqbn"):
+        values = [getattr(board, field) for board in boards()]
+        assert len(set(values)) == len(values)
 
 
 @pytest.mark.parametrize("text", ["PB6", "PC6", "D20", "A6", "PB8", "D012", "B4", "", "-1"])

@@ -56,23 +56,24 @@ def test_libraries_take_the_pins_meant_for_them(board: Board) -> None:
         assert claims is None or set(claims.pins) == marked
 
 
-def test_servo_takes_timers_as_servos_are_attached(uno: Board, mega: Board) -> None:
+# The timers of each chip in the order of ServoTimers.h of arduino-libraries/Servo.
+SERVO_TIMERS = {"atmega328p": (1,), "atmega1280": (5, 1, 3, 4), "atmega2560": (5, 1, 3, 4)}
+
+
+def test_servo_takes_timers_as_servos_are_attached(board: Board) -> None:
     """
     Servo takes timer 1 of the Uno; of the Mega 5, 1, 3, 4, with all four COMPA vectors.
 
-    From ServoTimers.h and Servo.h (SERVOS_PER_TIMER) of arduino-libraries/Servo.
+    A timer is for 12 servos: SERVOS_PER_TIMER of Servo.h.
     """
-    on_uno, on_mega = (library_claims("Servo", board) for board in (uno, mega))
+    claims = library_claims("Servo", board)
 
-    assert on_uno is not None
-    assert on_uno.timers == (1,)
-    assert [vector.name for vector in on_uno.vectors] == ["TIMER1_COMPA_vect"]
-    assert on_mega is not None
-    assert on_mega.timers == (5, 1, 3, 4)
-    assert {vector.name for vector in on_mega.vectors} == {
-        f"TIMER{timer}_COMPA_vect" for timer in (1, 3, 4, 5)
+    assert claims is not None
+    assert claims.timers == SERVO_TIMERS[board.mcu.name]
+    assert {vector.name for vector in claims.vectors} == {
+        f"TIMER{timer}_COMPA_vect" for timer in claims.timers
     }
-    assert on_mega.objects_per_timer == 12
+    assert claims.objects_per_timer == 12
 
 
 def test_an_unknown_library_has_no_claims(uno: Board) -> None:

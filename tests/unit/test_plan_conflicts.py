@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from stepgen.devices import boards
 from stepgen.errors import Fault, StepgenError
 from stepgen.plan.claims import Claim, report_conflicts
 from stepgen.plan.faults import Faults
@@ -69,7 +70,8 @@ def test_an_unknown_board_is_refused_with_the_known_ones(faults: Faulty) -> None
     (fault,) = faults("board: zero\nmotors:\n  motor: {drive: motor-shield}\n")
 
     assert (fault.place[-4:], fault.text) == (":2:8", "zero")
-    assert fault.reason == "is no board that stepgen knows; choose one of mega, uno"
+    known = ", ".join(board.name for board in boards())
+    assert fault.reason == f"is no board that stepgen knows; choose one of {known}"
 
 
 def test_a_timer_that_the_board_lacks_is_refused(faults: Faulty) -> None:

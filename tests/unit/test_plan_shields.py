@@ -172,7 +172,10 @@ def test_two_shields_in_one_place_are_refused(refused: Refused) -> None:
         ("[D9, D6]", "D9 is DIR A of this shield already; take a free pin"),
         ("[D6, PH5]", "D8 is DIR B of this shield already; take a free pin"),
         ("[D6, PH3]", "D6 is PWM A of this shield already; take a free pin"),
-        ("[D6, D77]", "the Arduino Mega 2560 has no pin D77, which the shield uses as PWM B"),
+        (
+            "[D6, D77]",
+            "PWM B: the Arduino Mega 2560 has no pin D77; `stepgen boards mega` lists them",
+        ),
     ],
 )
 def test_enables_need_free_pins_of_the_board(refused: Refused, enables: str, reason: str) -> None:

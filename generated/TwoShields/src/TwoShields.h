@@ -52,7 +52,8 @@ constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_
 constexpr uint32_t MOTOR_MIN_TOP = 769UL;  // 20806 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 4.19 s
 
-// I/O clocks in a second: 16 MHz, less what the CLKPR divider takes.
+// I/O clocks in a second: 16 MHz, divided as CLKPR says at the moment. After a
+// change of CLKPR a speed needs a new virtual timer TOP, and millis() counts slower, too.
 uint32_t motorTimerGetIOclocksPerSecond();
 
 // The virtual timer TOP for a speed in steps per second; 0 for 0, which stops the motor.

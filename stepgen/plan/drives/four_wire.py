@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from stepgen.devices import Board
 from stepgen.plan.coils import CoilDrive, Pattern, Wire
 from stepgen.plan.faults import Faults
+from stepgen.plan.pins import missing_pin
 from stepgen.spec.base import KindModel
 from stepgen.spec.drives.four_wire import FourWire
 from stepgen.spec.sequence import PatternTable
@@ -28,9 +29,7 @@ def plan(
     for index, name in enumerate(spec.pins):
         pin = board.find_pin(name)
         if pin is None:
-            faults.at("pins", index).report(
-                f"the {board.title} has no pin {name}; `stepgen boards {board.name}` lists them"
-            )
+            faults.at("pins", index).report(missing_pin(name, board))
         elif pin in [wire.pin for wire in wires]:
             faults.at("pins", index).report(
                 f"{name} is {pin.label} again; give each of the four coils a pin of its own"

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from stepgen.devices import Board
 from stepgen.plan.coils import CoilDrive, Pattern, Wire
 from stepgen.plan.faults import Faults
+from stepgen.plan.pins import missing_pin
 from stepgen.spec.base import KindModel
 from stepgen.spec.drives.motor_shield import MotorShield
 
@@ -96,9 +97,7 @@ def _wires(
         coil = "AB"[index]
         pin = board.find_pin(name)
         if pin is None:
-            faults.at(index).report(
-                f"the {board.title} has no pin {name}, which the shield uses as {signal} {coil}"
-            )
+            faults.at(index).report(f"{signal} {coil}: {missing_pin(name, board)}")
         wires.append(Wire(f"{signal} {coil}", pin) if pin else None)
     return tuple(wires)
 

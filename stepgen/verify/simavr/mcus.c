@@ -2,6 +2,18 @@
 
 #include <string.h>
 
+/* The ATmega1280 is an ATmega2560 with half the flash. */
+#define MEGA_FACTS                                                                                \
+    .ports = "ABCDEFGHJKL",                                                                       \
+    .pin_address = {0x20, 0x23, 0x26, 0x29, 0x2C, 0x2F, 0x32, 0x100, 0x103, 0x106, 0x109},        \
+    .timer_count = 4,                                                                             \
+    .timers = {                                                                                   \
+        {'1', 0x80, 0x6F, 0x36, 3, {20, 17, 18, 19, 0, 16}},                                      \
+        {'3', 0x90, 0x71, 0x38, 3, {35, 32, 33, 34, 0, 31}},                                      \
+        {'4', 0xA0, 0x72, 0x39, 3, {45, 42, 43, 44, 0, 41}},                                      \
+        {'5', 0x120, 0x73, 0x3A, 3, {50, 47, 48, 49, 0, 46}},                                     \
+    }
+
 static const mcu_facts MCUS[] = {
     {
         .name = "atmega328p",
@@ -10,19 +22,8 @@ static const mcu_facts MCUS[] = {
         .timer_count = 1,
         .timers = {{'1', 0x80, 0x6F, 0x36, 2, {13, 11, 12, 0, 0, 10}}},
     },
-    {
-        .name = "atmega2560",
-        .ports = "ABCDEFGHJKL",
-        .pin_address = {0x20, 0x23, 0x26, 0x29, 0x2C, 0x2F, 0x32, 0x100, 0x103, 0x106, 0x109},
-        .timer_count = 4,
-        .timers =
-            {
-                {'1', 0x80, 0x6F, 0x36, 3, {20, 17, 18, 19, 0, 16}},
-                {'3', 0x90, 0x71, 0x38, 3, {35, 32, 33, 34, 0, 31}},
-                {'4', 0xA0, 0x72, 0x39, 3, {45, 42, 43, 44, 0, 41}},
-                {'5', 0x120, 0x73, 0x3A, 3, {50, 47, 48, 49, 0, 46}},
-            },
-    },
+    {.name = "atmega1280", MEGA_FACTS},
+    {.name = "atmega2560", MEGA_FACTS},
 };
 
 const mcu_facts *mcu_find(const char *name)
