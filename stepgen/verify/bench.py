@@ -11,7 +11,7 @@ from typing import Self
 from stepgen.errors import StepgenError
 from stepgen.plan.model import Plan
 from stepgen.verify.simavr import Machine
-from stepgen.verify.simavr.events import Events
+from stepgen.verify.events import Events
 
 _MAILBOX = Struct("<BBBBIIIHHbBi")
 _LOOP_OFFSET = 2

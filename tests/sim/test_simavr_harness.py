@@ -16,7 +16,7 @@ import pytest
 
 from stepgen.errors import StepgenError
 from stepgen.verify.simavr import Kind, Machine, build
-from stepgen.verify.simavr.events import EVENT, Events
+from stepgen.verify.events import EVENT, Events
 
 PROGRAMS = Path(__file__).parent / "programs"
 F_CPU_HZ = 16_000_000

@@ -2,7 +2,6 @@
 libsimavr, driven so that it behaves as the chip does, cycle by cycle.
 """
 
-from stepgen.verify.simavr.events import EVENT, Event, Kind
 from stepgen.verify.simavr.machine import Machine
 
-__all__ = ["EVENT", "Event", "Kind", "Machine"]
+__all__ = ["Machine"]
