@@ -2,8 +2,8 @@
 One simulated ATmega328P that runs one program in yasimavr, instruction by instruction.
 
 What yasimavr leaves out or does unlike the chip is put right here: the interrupt response of 4
-cycles and the 4 of waking up, and the cycle within an instruction at which it reaches a register
-(yasimavr takes its first).
+cycles and the 4 of waking up; the cycle within an instruction at which it reaches a register
+(yasimavr takes its first); and a tick at the very edge of an access counts before it.
 """
 
 from collections.abc import Iterable
@@ -23,7 +23,8 @@ _NO_MARK = -1
 _WAKE_CYCLES = 4
 _INTERRUPTS_ON = 0x80
 _IO_OFFSET = 0x20
-_LONGEST_DOZE_CYCLES = 1_000_000_000
+_TIMER_REGISTERS = 14  # TCCRnA to OCRnC, or to what would be it
+_LONG_MASK, _LONG = 0xFC0F, 0x9000  # lds and sts
 # Cycles into an instruction at which it reaches the register.
 _ACCESS_CYCLES = {Effect.STORE_1: 1, Effect.STORE_2: 2, Effect.LOAD_2: 1}
 
@@ -59,7 +60,13 @@ class Machine:
         self._chip = self._chip_called(mcu)
         firmware = read_firmware(elf)
         self._symbols = firmware.symbols
+        self._image = firmware.image
         self._effects = classify(firmware.image)
+        self._timer_registers = {
+            timer.tccra.address + offset
+            for timer in self._chip.timers16
+            for offset in range(_TIMER_REGISTERS)
+        }
         self.cycle = 0
         self.fine = False
         self._waking = 0
@@ -166,12 +173,21 @@ class Machine:
             self._finish(self._device.exec_cycle(), pc)
             return
         self._advance(ahead)
+        if self._reaches_timer(pc):
+            self._manager.increment_cycle(1)
         flags = self._probe.read_sreg()
         # An interrupt that was raised on the way waits for the end of the instruction.
         self._probe.write_sreg(flags & ~_INTERRUPTS_ON)
         taken = self._device.exec_cycle()
         self._probe.write_sreg(flags)
         self._finish(taken - ahead, pc)
+
+    def _reaches_timer(self, pc: int) -> bool:
+        """
+        Tell whether the instruction at *pc* is an LDS or STS of a register of a 16-bit timer.
+        """
+        opcode, address = (int.from_bytes(self._image[at : at + 2], "little") for at in (pc, pc + 2))
+        return opcode & _LONG_MASK == _LONG and address in self._timer_registers
 
     def _finish(self, cycles: int, pc: int) -> None:
         """
@@ -194,11 +210,11 @@ class Machine:
         manager, target = self._manager, self.cycle + cycles
         due = manager.next_when()
         while 0 < due <= target:
-            manager.increment_cycle(max(0, due - self.cycle))
-            self.cycle = self._recorder.now = max(due, self.cycle)
+            manager.increment_cycle(max(0, due - manager.cycle()))
+            self._recorder.now = max(due, self.cycle)
             manager.process_timers()
             due = manager.next_when()
-        manager.increment_cycle(target - self.cycle)
+        manager.increment_cycle(max(0, target - manager.cycle()))
         self.cycle = self._recorder.now = target
 
     def _note_flags(self) -> None:
