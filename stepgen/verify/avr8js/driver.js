@@ -15,6 +15,8 @@ const KIND = {
 const EEDR = 0x40, SMCR = 0x53, SREG = 0x5f;
 const I_FLAG = 0x80, SLEEP_ENABLE = 1, SLEEP_MODE = 0x0e;
 const SLEEP = 0x9588, RETI = 0x9518;
+const CBI_MASK = 0xff00, CBI = 0x9800;
+const SERIAL_RETRY_CYCLES = 100;
 const LIBRARY_RESPONSE = 2;  // cycles that avrInterrupt() takes
 const WAKE_CYCLES = 4;
 const WORDS_PER_VECTOR = 2;
@@ -230,6 +232,7 @@ class Machine {
     const opcode = cpu.progMem[cpu.pc];
     const before = cpu.data[SREG] & I_FLAG;
     avrInstruction(cpu);
+    if (this.correct && (opcode & CBI_MASK) === CBI) cpu.cycles++;  // avr8js: 1 cycle
     const now = cpu.data[SREG] & I_FLAG;
     this.settle();
     if (opcode === RETI) this.leave();
@@ -311,8 +314,12 @@ class Machine {
     return {};
   }
 
+  // The next byte of the line, once the receiver is on and the byte before is complete.
   feedSerial() {
-    if (this.serial.length && this.usart.writeByte(this.serial[0])) this.serial.shift();
+    if (!this.serial.length) return;
+    const taken = this.usart.rxEnable && this.usart.writeByte(this.serial[0]);
+    if (taken) this.serial.shift();
+    else this.cpu.addClockEvent(() => this.feedSerial(), SERIAL_RETRY_CYCLES);
   }
 
   events() {

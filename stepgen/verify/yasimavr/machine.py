@@ -2,8 +2,9 @@
 One simulated ATmega328P that runs one program in yasimavr, instruction by instruction.
 
 What yasimavr leaves out or does unlike the chip is put right here: the interrupt response of 4
-cycles and the 4 of waking up; the cycle within an instruction at which it reaches a register
-(yasimavr takes its first); and a tick at the very edge of an access counts before it.
+cycles and the 4 of waking up; the instruction that runs between SEI and an interrupt; RCALL, which
+takes 3 cycles; SBI of a register of strobes; the cycle within an instruction at which it reaches a
+register (yasimavr takes its first); and a tick at the very edge of an access counts before it.
 """
 
 from collections.abc import Iterable
@@ -26,7 +27,13 @@ _IO_OFFSET = 0x20
 _TIMER_REGISTERS = 14  # TCCRnA to OCRnC, or to what would be it
 _LONG_MASK, _LONG = 0xFC0F, 0x9000  # lds and sts
 # Cycles into an instruction at which it reaches the register.
-_ACCESS_CYCLES = {Effect.STORE_1: 1, Effect.STORE_2: 2, Effect.LOAD_2: 1}
+_ACCESS_CYCLES: dict[int, int] = {
+    Effect.STORE_1: 1,
+    Effect.STORE_2: 2,
+    Effect.SET_BIT: 2,
+    Effect.LOAD_2: 1,
+}
+_CORRECTED = {*_ACCESS_CYCLES, Effect.SHORT_CALL}
 
 
 class Machine:
@@ -62,6 +69,9 @@ class Machine:
         self._symbols = firmware.symbols
         self._image = firmware.image
         self._effects = classify(firmware.image)
+        self._strobes = {port.pin.address for port in self._chip.ports} | {
+            timer.tifr.address for timer in self._chip.timers16
+        }
         self._timer_registers = {
             timer.tccra.address + offset
             for timer in self._chip.timers16
@@ -119,7 +129,7 @@ class Machine:
         Raises:
             StepgenError: The program crashed.
         """
-        self._run(cycle, _NO_MARK)
+        self._go(cycle, _NO_MARK)
 
     def run_until_mark(self, value: int, *, limit_cycles: int) -> bool:
         """
@@ -128,9 +138,9 @@ class Machine:
         Raises:
             StepgenError: As of `run_until`.
         """
-        return self._run(self.cycle + limit_cycles, value)
+        return self._go(self.cycle + limit_cycles, value)
 
-    def _run(self, until: int, mark: int) -> bool:
+    def _go(self, until: int, mark: int) -> bool:
         recorder = self._recorder
         recorder.mark = _NO_MARK
         while self.cycle < until:
@@ -146,33 +156,51 @@ class Machine:
         """
         Run one instruction, or take an interrupt and run the first one of its vector.
         """
-        recorder = self._recorder
         pc = self._probe.read_pc()
         effect = self._effects[pc >> 1] if pc >> 1 < len(self._effects) else self._crash(pc)
-        can_be_interrupted = recorder.raised and self._interrupts_on and not self._just_changed
-        if can_be_interrupted or effect in {Effect.PLAIN, Effect.SLEEP}:
-            recorder.edge = self.cycle
-            self._finish(self._device.exec_cycle(), pc)
-        elif effect in _ACCESS_CYCLES:
-            self._access(_ACCESS_CYCLES[Effect(effect)], pc)
+        waits = bool(self._recorder.raised) and self._interrupts_on
+        if waits and self._just_changed and self._correct:
+            self._run_uninterrupted(effect, pc)
+        elif waits:
+            effect = Effect.PLAIN  # not this instruction runs, but the vector's
+            self._run(Effect.PLAIN, pc)
         else:
-            recorder.edge = self.cycle + 1
-            self._finish(self._device.exec_cycle(), pc)
-        self._just_changed = effect in {Effect.FLAGS, Effect.RETURN} and not can_be_interrupted
+            self._run(effect, pc)
+        self._just_changed = effect in {Effect.FLAGS, Effect.RETURN}
         if self._just_changed:
             self._note_flags()
         elif effect == Effect.SLEEP:
             self._asleep = self._device.state() == self._core.Device.State.Sleeping
 
-    def _access(self, ahead: int, pc: int) -> None:
+    def _run_uninterrupted(self, effect: int, pc: int) -> None:
         """
-        Run an instruction that reaches a register *ahead* cycles after its start.
+        Run the one instruction that comes between SEI or RETI and a waiting interrupt.
         """
-        self._recorder.edge = self.cycle + ahead
-        if not self._correct:
+        self._probe.write_sreg(self._probe.read_sreg() & ~_INTERRUPTS_ON)
+        self._run(effect, pc)
+        if effect != Effect.FLAGS:
+            self._probe.write_sreg(self._probe.read_sreg() | _INTERRUPTS_ON)
+
+    def _run(self, effect: int, pc: int) -> None:
+        self._recorder.edge = self.cycle + _ACCESS_CYCLES.get(effect, 1)
+        if not self._correct or effect not in _CORRECTED:
             self._finish(self._device.exec_cycle(), pc)
-            return
+        elif effect == Effect.SHORT_CALL:
+            self._finish(self._device.exec_cycle() - 1, pc)
+        else:
+            self._access(effect, pc)
+
+    def _access(self, effect: int, pc: int) -> None:
+        """
+        Run an instruction that reaches a register some cycles after its start.
+        """
+        ahead = _ACCESS_CYCLES[effect]
         self._advance(ahead)
+        if effect == Effect.SET_BIT and (strobe := self._strobe(pc)):
+            address, bit = strobe
+            self._probe.write_ioreg(self._place(address), 1 << bit)
+            self._probe.write_pc(pc + 2)
+            return
         if self._reaches_timer(pc):
             self._manager.increment_cycle(1)
         flags = self._probe.read_sreg()
@@ -181,6 +209,13 @@ class Machine:
         taken = self._device.exec_cycle()
         self._probe.write_sreg(flags)
         self._finish(taken - ahead, pc)
+
+    def _strobe(self, pc: int) -> tuple[int, int] | None:
+        """
+        Return address and bit that the SBI at *pc* writes, if a one does something there.
+        """
+        address, bit = (self._image[pc] >> 3) + _IO_OFFSET, self._image[pc] & 7
+        return (address, bit) if address in self._strobes else None
 
     def _reaches_timer(self, pc: int) -> bool:
         """
@@ -257,8 +292,10 @@ class Machine:
         """
         Return what an I/O register (data address) holds now; reading disturbs nothing.
         """
-        place = self._core.reg_addr_t(address - _IO_OFFSET)
-        return int(self._probe.read_ioreg(place, False))  # noqa: FBT003 - not as the CPU
+        return int(self._probe.read_ioreg(self._place(address), False))  # noqa: FBT003 - no CPU
+
+    def _place(self, address: int) -> Any:  # noqa: ANN401 - a type of the library
+        return self._core.reg_addr_t(address - _IO_OFFSET)
 
     def symbol(self, name: str) -> int:
         """
@@ -282,7 +319,7 @@ class Machine:
         Pull the pin *bit* of the port whose PINx is at *pin_address* high or low from outside.
         """
         letter = next(port.letter for port in self._chip.ports if port.pin.address == pin_address)
-        pin = self._device.find_pin(self._core.str_to_id(f"P{letter}{bit}"))
+        pin = self._device.find_pin(f"P{letter}{bit}")
         pin.set_external_state("H" if high else "L")
 
     def events(self) -> Events:

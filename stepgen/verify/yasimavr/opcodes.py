@@ -16,7 +16,7 @@ class Effect(IntEnum):
     STORE_1 = 1
     """OUT: the access is in its one cycle."""
     STORE_2 = 2
-    """STS, ST, STD, SBI, CBI: the access is in the second of their cycles."""
+    """STS, ST, STD, CBI: the access is in the second of their cycles."""
     LOAD_2 = 3
     """LDS, LD, LDD: the same, but one cycle earlier: they read what was there at its start."""
     FLAGS = 4
@@ -24,6 +24,10 @@ class Effect(IntEnum):
     RETURN = 5
     """RETI."""
     SLEEP = 6
+    SHORT_CALL = 7
+    """RCALL."""
+    SET_BIT = 8
+    """SBI: of a register of strobes it writes its one bit only."""
 
 
 _SEI, _CLI, _RETI, _SLEEP = 0x9478, 0x94F8, 0x9518, 0x9588
@@ -38,7 +42,9 @@ _PATTERNS = (
     (0xFE0F, 0x920F, Effect.PLAIN),  # push
     (0xFE00, 0x9200, Effect.STORE_2),  # sts, st X, st -X, st X+, ...
     (0xD200, 0x8200, Effect.STORE_2),  # std Y+q, std Z+q
-    (0xFD00, 0x9800, Effect.STORE_2),  # cbi, sbi
+    (0xFF00, 0x9A00, Effect.SET_BIT),
+    (0xFF00, 0x9800, Effect.STORE_2),  # cbi
+    (0xF000, 0xD000, Effect.SHORT_CALL),
     (0xFE0F, 0x900F, Effect.PLAIN),  # pop
     (0xFE0C, 0x9004, Effect.PLAIN),  # lpm, elpm
     (0xFE00, 0x9000, Effect.LOAD_2),  # lds, ld
