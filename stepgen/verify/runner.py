@@ -10,6 +10,7 @@ from stepgen.spec import LoadedSpec
 from stepgen.verify.bench import Answer, Bench, Call, Loop
 from stepgen.verify.compare import Comparison, Scene, compare
 from stepgen.verify.scenarios import Scenario
+from stepgen.verify.simulators import SIMAVR, Simulator
 from stepgen.verify.subject import subjects
 from stepgen.verify.trace import Trace
 
@@ -47,14 +48,20 @@ class Outcome:
         )
 
 
-def run_scenario(loaded: LoadedSpec, plan: Plan, elf: Path, scenario: Scenario) -> Outcome:
+def run_scenario(
+    loaded: LoadedSpec,
+    plan: Plan,
+    elf: Path,
+    scenario: Scenario,
+    simulator: Simulator = SIMAVR,
+) -> Outcome:
     """
     Run *scenario* on the bench *elf* and compare every motor with the model.
 
     Raises:
         StepgenError: The sketch crashed or hangs.
     """
-    with Bench(plan, elf) as bench:
+    with Bench(plan, elf, simulator) as bench:
         bench.set_loop(scenario.loop)
         for action in scenario.actions:
             if isinstance(action, Call):
@@ -63,7 +70,8 @@ def run_scenario(loaded: LoadedSpec, plan: Plan, elf: Path, scenario: Scenario) 
                 bench.wait(action.cycles)
         trace = Trace(bench.events(), plan.board.mcu)
         answers = tuple(bench.answers)
-        scene = Scene(trace, answers, plan, bench.machine.cycle)
+        cycle, tolerance = bench.machine.cycle, simulator.tolerance_cycles
+        scene = Scene(trace, answers, plan, cycle, tolerance)
         motors = subjects(loaded, plan)
         return Outcome(
             scenario=scenario,

@@ -175,20 +175,30 @@ def port_write_cycles(lab: Lab) -> Iterator[str]:
             yield f"{seen} cycles between port writes, on the chip [2, 2, 5, 2]"
 
 
-@point("uart-sends", "USART0 sends a byte each 10 bit times; it takes two at once", "19.6")
-def uart_sends(lab: Lab) -> Iterator[str]:
+@point("uart", "USART0 receives bytes and sends bytes, by interrupts", "19.6, 19.7")
+def uart(lab: Lab) -> Iterator[str]:
     """
-    16 (UBRR + 1) cycles for each bit (19.3.1): here 640 for a byte; the interrupt answers at once.
+    The program sends each byte plus one.
     """
     with lab.running("serial") as machine:
         machine.send_serial(b"HAL")
         machine.run_until(10_000)
-        sent = of_kind(machine, Kind.UART)
-        if bytes(sent["value"].astype("u1")) != b"IBM":
-            yield f"sent {bytes(sent['value'].astype('u1'))!r} upon b'HAL', on the chip b'IBM'"
-        times = gaps([int(cycle) for cycle in sent["cycle"]])
-        if any(abs(time - 640) > 3 for time in times):  # noqa: PLR2004 - one instruction
-            yield f"{times} cycles between bytes, on the chip 640"
+        sent = bytes(of_kind(machine, Kind.UART)["value"].astype("u1"))
+        if sent != b"IBM":
+            yield f"sent {sent!r} upon b'HAL', on the chip b'IBM'"
+
+
+@point("uart-buffer", "USART0 takes a second byte while it sends the first", "19.6.1")
+def uart_buffer(lab: Lab) -> Iterator[str]:
+    """
+    So each answer leaves as soon as a byte has come: each 10 x 16 (UBRR + 1) = 640 cycles.
+    """
+    with lab.running("serial") as machine:
+        machine.send_serial(b"HAL")
+        machine.run_until(10_000)
+        times = gaps(cycles(machine, Kind.UART))
+        if [time for time in times if abs(time - 640) <= 3] != times or not times:  # noqa: PLR2004
+            yield f"{times} cycles between bytes, on the chip 640, give or take an instruction"
 
 
 @point("pin-change", "A change of an input raises its pin change interrupt", "13.2")
