@@ -17,7 +17,7 @@ from stepgen.errors import StepgenError
 from stepgen.verify.elf import read_firmware
 from stepgen.verify.events import Events
 from stepgen.verify.yasimavr import library
-from stepgen.verify.yasimavr.opcodes import Effect, classify
+from stepgen.verify.yasimavr.opcodes import FIRST_RAM_ADDRESS, Effect, classify, pointer_of
 from stepgen.verify.yasimavr.recorder import Recorder
 
 _NO_MARK = -1
@@ -26,6 +26,7 @@ _INTERRUPTS_ON = 0x80
 _IO_OFFSET = 0x20
 _TIMER_REGISTERS = 14  # TCCRnA to OCRnC, or to what would be it
 _LONG_MASK, _LONG = 0xFC0F, 0x9000  # lds and sts
+_IN_SREG_MASK, _IN_SREG = 0xFE0F, 0xB60F  # in Rd, SREG
 # Cycles into an instruction at which it reaches the register.
 _ACCESS_CYCLES: dict[int, int] = {
     Effect.STORE_1: 1,
@@ -168,7 +169,7 @@ class Machine:
             self._run(effect, pc)
         self._just_changed = effect in {Effect.FLAGS, Effect.RETURN}
         if self._just_changed:
-            self._note_flags()
+            self._note_flags(fine=self.fine and effect == Effect.FLAGS)
         elif effect == Effect.SLEEP:
             self._asleep = self._device.state() == self._core.Device.State.Sleeping
 
@@ -176,10 +177,14 @@ class Machine:
         """
         Run the one instruction that comes between SEI or RETI and a waiting interrupt.
         """
-        self._probe.write_sreg(self._probe.read_sreg() & ~_INTERRUPTS_ON)
+        probe, opcode = self._probe, self._word(pc)
+        probe.write_sreg(probe.read_sreg() & ~_INTERRUPTS_ON)
         self._run(effect, pc)
         if effect != Effect.FLAGS:
-            self._probe.write_sreg(self._probe.read_sreg() | _INTERRUPTS_ON)
+            probe.write_sreg(probe.read_sreg() | _INTERRUPTS_ON)
+        if opcode & _IN_SREG_MASK == _IN_SREG:
+            register = opcode >> 4 & 0x1F
+            probe.write_gpreg(register, probe.read_gpreg(register) | _INTERRUPTS_ON)
 
     def _run(self, effect: int, pc: int) -> None:
         self._recorder.edge = self.cycle + _ACCESS_CYCLES.get(effect, 1)
@@ -194,14 +199,16 @@ class Machine:
         """
         Run an instruction that reaches a register some cycles after its start.
         """
-        ahead = _ACCESS_CYCLES[effect]
+        ahead, address = _ACCESS_CYCLES[effect], self._address(pc)
+        if address >= FIRST_RAM_ADDRESS:
+            self._finish(self._device.exec_cycle(), pc)
+            return
         self._advance(ahead)
         if effect == Effect.SET_BIT and (strobe := self._strobe(pc)):
-            address, bit = strobe
-            self._probe.write_ioreg(self._place(address), 1 << bit)
+            self._probe.write_ioreg(self._place(strobe[0]), 1 << strobe[1])
             self._probe.write_pc(pc + 2)
             return
-        if self._reaches_timer(pc):
+        if address in self._timer_registers:
             self._manager.increment_cycle(1)
         flags = self._probe.read_sreg()
         # An interrupt that was raised on the way waits for the end of the instruction.
@@ -217,12 +224,20 @@ class Machine:
         address, bit = (self._image[pc] >> 3) + _IO_OFFSET, self._image[pc] & 7
         return (address, bit) if address in self._strobes else None
 
-    def _reaches_timer(self, pc: int) -> bool:
+    def _address(self, pc: int) -> int:
         """
-        Tell whether the instruction at *pc* is an LDS or STS of a register of a 16-bit timer.
+        Return the data address that the LD, ST, LDS or STS at *pc* reaches, 0 of another one.
         """
-        opcode, address = (int.from_bytes(self._image[at : at + 2], "little") for at in (pc, pc + 2))
-        return opcode & _LONG_MASK == _LONG and address in self._timer_registers
+        opcode = self._word(pc)
+        pointer = pointer_of(opcode)
+        if pointer is not None:
+            low, offset = pointer
+            read = self._probe.read_gpreg
+            return int(read(low) | read(low + 1) << 8) + offset
+        return self._word(pc + 2) if opcode & _LONG_MASK == _LONG else 0
+
+    def _word(self, pc: int) -> int:
+        return int.from_bytes(self._image[pc : pc + 2], "little")
 
     def _finish(self, cycles: int, pc: int) -> None:
         """
@@ -252,10 +267,10 @@ class Machine:
         manager.increment_cycle(max(0, target - manager.cycle()))
         self.cycle = self._recorder.now = target
 
-    def _note_flags(self) -> None:
+    def _note_flags(self, *, fine: bool) -> None:
         on = bool(self._probe.read_sreg() & _INTERRUPTS_ON)
         if on != self._interrupts_on:
-            self._recorder.note_masking(self.cycle, on=on, fine=self.fine)
+            self._recorder.note_masking(self.cycle, on=on, fine=fine)
         self._interrupts_on = on
 
     def _doze(self, until: int) -> None:
