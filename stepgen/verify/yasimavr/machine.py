@@ -151,6 +151,8 @@ class Machine:
                 self._step()
             if mark != _NO_MARK and recorder.mark == mark:
                 return True
+        if self._device.state() == self._core.Device.State.Crashed:
+            self._crash(self._probe.read_pc())
         return False
 
     def _step(self) -> None:
@@ -167,6 +169,9 @@ class Machine:
             self._run(Effect.PLAIN, pc)
         else:
             self._run(effect, pc)
+        if effect == Effect.PLAIN:
+            self._just_changed = False
+            return
         self._just_changed = effect in {Effect.FLAGS, Effect.RETURN}
         if self._just_changed:
             self._note_flags(fine=self.fine and effect == Effect.FLAGS)
@@ -188,7 +193,7 @@ class Machine:
 
     def _run(self, effect: int, pc: int) -> None:
         self._recorder.edge = self.cycle + _ACCESS_CYCLES.get(effect, 1)
-        if not self._correct or effect not in _CORRECTED:
+        if effect == Effect.PLAIN or not self._correct or effect not in _CORRECTED:
             self._finish(self._device.exec_cycle(), pc)
         elif effect == Effect.SHORT_CALL:
             self._finish(self._device.exec_cycle() - 1, pc)
@@ -243,14 +248,15 @@ class Machine:
         """
         Let the rest of an instruction pass, and the response if an interrupt was taken before it.
         """
-        if cycles < 0 or self._device.state() == self._core.Device.State.Crashed:
+        if cycles < 0:
             self._crash(pc)
-        response = 0
-        if self._recorder.enter(self.cycle, pc):
-            self._interrupts_on = False
-            if self._correct:
-                response = self._chip.response_cycles + self._waking
-            self._waking = 0
+        if self._recorder.taken is None:
+            self._advance(cycles)
+            return
+        self._recorder.enter(self.cycle, pc)
+        self._interrupts_on = False
+        response = self._chip.response_cycles + self._waking if self._correct else 0
+        self._waking = 0
         self._advance(cycles + response)
 
     def _advance(self, cycles: int) -> None:
@@ -264,6 +270,7 @@ class Machine:
             self._recorder.now = max(due, self.cycle)
             manager.process_timers()
             due = manager.next_when()
+        # The manager is a cycle ahead where an access to a timer has just been made.
         manager.increment_cycle(max(0, target - manager.cycle()))
         self.cycle = self._recorder.now = target
 

@@ -43,7 +43,7 @@ class Recorder:
         self._raised_at: dict[int, int] = {}
         self._enabled_at: dict[int, int] = {}
         self._unmasked_at = 0
-        self._taken: int | None = None
+        self.taken: int | None = None
         self._frames: list[tuple[int, int]] = []
         self._timer_vectors = {
             vector.number
@@ -132,24 +132,23 @@ class Recorder:
             self.raised.discard(vector)
         elif state == _TAKEN:
             self.raised.discard(vector)
-            self._taken = vector
+            self.taken = vector
         elif state == _RETURNED and self._frames:
             vector, entered = self._frames.pop()
             self._record(Kind.ISR_EXIT, self.now + _RETI_CYCLES, vector, 0, entered)
             self._unmasked_at = self.now + _RETI_CYCLES
 
-    def enter(self, cycle: int, pc: int) -> bool:
+    def enter(self, cycle: int, pc: int) -> None:
         """
-        Record that an interrupt is taken at *cycle*, if one is; tell whether.
+        Record that the interrupt `taken` is taken at *cycle*.
         """
-        vector, self._taken = self._taken, None
+        vector, self.taken = self.taken, None
         if vector is None:
-            return False
+            return
         since = self._raised_at.get(vector, cycle)
         until = max(since, self._unmasked_at, self._enabled_at.get(vector, 0))
         self._record(Kind.ISR_ENTER, cycle, vector, pc, since, until)
         self._frames.append((vector, cycle))
-        return True
 
     def note_masking(self, cycle: int, *, on: bool, fine: bool) -> None:
         """
