@@ -10,8 +10,8 @@ from typing import Self
 
 from stepgen.errors import StepgenError
 from stepgen.plan.model import Plan
-from stepgen.verify.simulators import SIMAVR, Simulator
 from stepgen.verify.events import Events
+from stepgen.verify.simulators import SIMAVR, Simulator
 
 _MAILBOX = Struct("<BBBBIIIHHbBi")
 _LOOP_OFFSET = 2

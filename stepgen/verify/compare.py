@@ -36,9 +36,7 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     return result
 
 
-def _within_tolerance(
-    runs: list[Run], edges: Sequence[Edge], tolerance_cycles: int
-) -> list[Run]:
+def _within_tolerance(runs: list[Run], edges: Sequence[Edge], tolerance_cycles: int) -> list[Run]:
     """
     Return *runs*, those that are raised within the tolerance of an edge as if raised at it.
     """

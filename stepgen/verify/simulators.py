@@ -5,6 +5,7 @@ The simulators that firmware can run in, behind one interface.
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from types import TracebackType
 from typing import Protocol, Self
 
 from stepgen.errors import StepgenError
@@ -31,7 +32,12 @@ class Machine(Protocol):
     def __enter__(self) -> Self:
         """Return the machine."""
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         """Close it."""
 
     def run_until(self, cycle: int) -> None:
@@ -59,7 +65,10 @@ class Machine(Protocol):
         """Pull a pin high or low from outside."""
 
     def events(self) -> Events:
-        """Return what was recorded since reset, dtype EVENT."""
+        """Return what was recorded since `clear_events`, dtype EVENT."""
+
+    def clear_events(self) -> None:
+        """Forget what was recorded."""
 
     def close(self) -> None:
         """Free what the machine holds."""
@@ -70,9 +79,7 @@ class OpenMachine(Protocol):
     Returns a machine just out of reset, with the program *elf* in its flash.
     """
 
-    def __call__(
-        self, elf: Path, *, mcu: str, f_cpu_hz: int, watch: Iterable[int] = ()
-    ) -> Machine:
+    def __call__(self, elf: Path, *, mcu: str, f_cpu_hz: int, watch: Iterable[int] = ()) -> Machine:
         """See above."""
 
 
@@ -123,8 +130,10 @@ class Simulator:
         return f"{self.name} {self.version}"
 
 
-# One simulated second at 16 MHz: two or three seconds of real time in avr8js, ten in yasimavr.
-_SHORT_CYCLES = 16_000_000
+# Longer ones take too much of real time: a busy loop runs at 10 to 25 MHz in avr8js, at 0.5 to
+# 1 MHz in yasimavr, which is run instruction by instruction.
+_AVR8JS_CYCLES = 16_000_000
+_YASIMAVR_CYCLES = 3_200_000
 
 # Interrupts that a mask holds back, and when they may come.
 _MASKING = {"sei-delay", "masked-flag"}
@@ -151,7 +160,7 @@ AVR8JS = Simulator(
     avr8js.find_version,
     avr8js.Machine,
     avr8js.INSTALL,
-    longest_scenario_cycles=_SHORT_CYCLES,
+    longest_scenario_cycles=_AVR8JS_CYCLES,
     corrected=frozenset(
         {"prescaler-phase", "count-kept", "start-order", "flag-sbi", "port-write-cycles"}
         | {"instruction-cycles", "instruction-cycles-2560"}
@@ -167,7 +176,7 @@ YASIMAVR = Simulator(
     yasimavr.INSTALL,
     # After a change of the prescaler of a running timer its next flag is a cycle late.
     tolerance_cycles=1,
-    longest_scenario_cycles=_SHORT_CYCLES,
+    longest_scenario_cycles=_YASIMAVR_CYCLES,
     corrected=frozenset(
         {"prescaler-phase", "slow-step", "count-kept", "start-order", "late-compare-shows"}
         | {"compare-flag-edge", "flag-sbi", "pin-writes", "instruction-cycles"}

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from stepgen.errors import StepgenError
-from stepgen.verify.simavr import Kind, Machine, build
-from stepgen.verify.events import EVENT, Events
+from stepgen.verify.events import EVENT, Events, Kind
+from stepgen.verify.simavr import Machine, build
 
 PROGRAMS = Path(__file__).parent / "programs"
 F_CPU_HZ = 16_000_000

@@ -91,6 +91,7 @@ def _timer16(timer: Timer16, mcu: Mcu) -> dict[str, Any]:
 
 def _common(bits: int, timsk: int, vectors: dict[int, Vector]) -> dict[str, Any]:
     has_c = _OCFC in vectors
+    bits_used = (_TOV, _OCFA, _OCFB, _OCFC if has_c else 0)
     return {
         "bits": bits,
         "TIMSK": timsk,
@@ -103,8 +104,8 @@ def _common(bits: int, timsk: int, vectors: dict[int, Vector]) -> dict[str, Any]
         "compAInterrupt": _address(vectors[_OCFA]),
         "compBInterrupt": _address(vectors[_OCFB]),
         "compCInterrupt": _address(vectors[_OCFC]) if has_c else 0,
-        **{"TOV": _TOV, "OCFA": _OCFA, "OCFB": _OCFB, "OCFC": _OCFC if has_c else 0},
-        **{"TOIE": _TOV, "OCIEA": _OCFA, "OCIEB": _OCFB, "OCIEC": _OCFC if has_c else 0},
+        **dict(zip(("TOV", "OCFA", "OCFB", "OCFC"), bits_used, strict=True)),
+        **dict(zip(("TOIE", "OCIEA", "OCIEB", "OCIEC"), bits_used, strict=True)),
         "enables": [[mask, vector.number] for mask, vector in vectors.items()],
     }
 

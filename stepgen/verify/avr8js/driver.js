@@ -339,6 +339,7 @@ const requests = {
   drive: (request) => machine.drive(request),
   send: (request) => machine.send(request),
   events: () => machine.events(),
+  clear: () => { machine.rows = []; return {}; },
 };
 
 function answer(line) {

@@ -35,7 +35,7 @@ class Machine:
         StepgenError: No such chip, no program, or no avr8js.
     """
 
-    isr_stack: dict[int, int] = {}  # not measured  # noqa: RUF012 - nobody writes to it
+    isr_stack: dict[int, int] = {}  # noqa: RUF012 - not measured, and nobody writes to it
 
     def __init__(
         self,
@@ -162,7 +162,7 @@ class Machine:
 
     def events(self) -> Events:
         """
-        Return everything that was recorded since reset, dtype EVENT.
+        Return everything that was recorded since `clear_events`, dtype EVENT.
         """
         answer = self._driver.ask("events")
         rows = np.frombuffer(base64.b64decode(answer["rows"]), dtype="<f8")
@@ -171,3 +171,9 @@ class Machine:
         for name, column in zip(EVENT.names or (), columns, strict=True):
             events[name] = column
         return events
+
+    def clear_events(self) -> None:
+        """
+        Forget what was recorded.
+        """
+        self._driver.ask("clear")

@@ -37,7 +37,9 @@ def _instructions(wide: int) -> Judge:
             machine.run_until_mark(3, limit_cycles=1000)
             # Every other gap, less the cycle of the out that is the second mark.
             taken = [gap - 1 for gap in gaps(cycles(machine, Kind.MARK))[::2]]
-            wrong = [i for i, pair in enumerate(zip(expected, taken, strict=False)) if len({*pair}) > 1]
+            wrong = [
+                i for i, pair in enumerate(zip(expected, taken, strict=False)) if len({*pair}) > 1
+            ]
             if len(taken) != len(expected) or wrong:
                 yield f"cycles of instructions: {taken}, but the chip has {expected}"
 
@@ -47,9 +49,9 @@ def _instructions(wide: int) -> Judge:
 instructions_uno = point("instruction-cycles", "Cycles of each kind of instruction", "32")(
     _instructions(0)
 )
-instructions_mega = point(
-    "instruction-cycles-2560", "The same on the ATmega2560", "33", MEGA_CHIP
-)(_instructions(1))
+instructions_mega = point("instruction-cycles-2560", "The same on the ATmega2560", "33", MEGA_CHIP)(
+    _instructions(1)
+)
 
 
 def _response(response: int) -> Judge:
@@ -89,7 +91,7 @@ def wake_up(lab: Lab) -> Iterator[str]:
     Asleep the flag waits for nothing: response 4, waking 4, jmp 3, sbi 2.
     """
     macros = {"MODE": FAST, "CLOCK": CLOCK_1024, "TOP_VALUE": 99, "IDLE": 1}
-    with lab.running("periodic", **macros) as machine:
+    with lab.running("periodic", watch=(), **macros) as machine:
         machine.run_until(6 * 102_400)
         raised, toggled = cycles(machine, Kind.RAISE), cycles(machine, Kind.PORT)[1:]
         seen = {port - flag for port, flag in zip(toggled, raised, strict=False)}
@@ -155,9 +157,9 @@ def _port_writes(port_h: list[int]) -> Judge:
     return judge
 
 
-pin_writes = point("pin-writes", "Ones written to PINx toggle those bits; sbi toggles one", "14.2.2")(
-    _port_writes([])
-)
+pin_writes = point(
+    "pin-writes", "Ones written to PINx toggle those bits; sbi toggles one", "14.2.2"
+)(_port_writes([]))
 pin_writes_mega = point("pin-writes-2560", "The same beyond port G", "13.2.2", MEGA_CHIP)(
     _port_writes([0x18, 0x08])
 )
@@ -166,7 +168,7 @@ pin_writes_mega = point("pin-writes-2560", "The same beyond port G", "13.2.2", M
 @point("port-write-cycles", "A port changes at the end of its instruction", "32")
 def port_write_cycles(lab: Lab) -> Iterator[str]:
     """
-    ldi and out; sbi; cbi, ldi and sts; sbi: sbi, cbi and sts take 2 cycles.
+    See the cycles of ldi and out; sbi; cbi, ldi and sts; sbi: sbi, cbi and sts take 2 cycles.
     """
     with lab.running("ports") as machine:
         machine.run_until_mark(1, limit_cycles=1000)
@@ -178,7 +180,7 @@ def port_write_cycles(lab: Lab) -> Iterator[str]:
 @point("uart", "USART0 receives bytes and sends bytes, by interrupts", "19.6, 19.7")
 def uart(lab: Lab) -> Iterator[str]:
     """
-    The program sends each byte plus one.
+    Let it send each byte plus one.
     """
     with lab.running("serial") as machine:
         machine.send_serial(b"HAL")

@@ -5,6 +5,7 @@ Where a point is tried: programs compiled with macros, run on one chip of one si
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from stepgen.verify.cache import build_once, content_key
@@ -92,7 +93,7 @@ def gaps(values: Sequence[int]) -> list[int]:
     """
     Return what lies between each two of *values*.
     """
-    return [after - before for before, after in zip(values, values[1:], strict=False)]
+    return [after - before for before, after in pairwise(values)]
 
 
 def ram(machine: Machine, name: str, size: int) -> list[int]:

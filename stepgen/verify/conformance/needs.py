@@ -77,7 +77,11 @@ def refusal(plan: Plan, simulator: Simulator, compiler: Compiler) -> str:
         for one in needed_points(plan)
         if (verdict := judge(one, simulator, compiler)).findings
     ]
-    return f"{simulator.title} is unlike the chip in what this spec depends on: " + "; ".join(failed) if failed else ""
+    return (
+        f"{simulator.title} is unlike the chip in what this spec depends on: " + "; ".join(failed)
+        if failed
+        else ""
+    )
 
 
 def refuse(plan: Plan, place: str, simulator: Simulator, compiler: Compiler) -> None:

@@ -34,9 +34,7 @@ class Point:
     judge: Judge
 
 
-def point(
-    name: str, demand: str, source: str, mcu: str = UNO_CHIP
-) -> Callable[[Judge], Point]:
+def point(name: str, demand: str, source: str, mcu: str = UNO_CHIP) -> Callable[[Judge], Point]:
     """
     Make the function below it the judge of a point.
     """

@@ -30,11 +30,18 @@ class Effect(IntEnum):
 
 FIRST_RAM_ADDRESS = 0x100
 _LONG_MASK, _LONG = 0xFC0F, 0x9000  # lds and sts
+_LDD_MASK, _LDD = 0xD000, 0x8000  # and std
+_LD_MASK, _LD = 0xFC00, 0x9000  # and st
 _X, _Y, _Z = 26, 28, 30
 # By the last four bits: X, X+, -X, Z+, -Z, Y+, -Y.
 _POINTERS = {
-    **{0xC: (_X, 0), 0xD: (_X, 0), 0xE: (_X, -1)},
-    **{0x1: (_Z, 0), 0x2: (_Z, -1), 0x9: (_Y, 0), 0xA: (_Y, -1)},
+    0xC: (_X, 0),
+    0xD: (_X, 0),
+    0xE: (_X, -1),
+    0x1: (_Z, 0),
+    0x2: (_Z, -1),
+    0x9: (_Y, 0),
+    0xA: (_Y, -1),
 }
 _SEI, _CLI, _RETI, _SLEEP = 0x9478, 0x94F8, 0x9518, 0x9588
 # (mask, value, effect), the first that fits counts; AVR instruction set manual.
@@ -73,11 +80,10 @@ def pointer_of(opcode: int) -> tuple[int, int] | None:
     """
     Return the low register of the pointer of an LD or ST, and what is added to it; else None.
     """
-    if opcode & 0xD000 == 0x8000:  # ldd, std
+    if opcode & _LDD_MASK == _LDD:
         offset = (opcode >> 8 & 0x20) | (opcode >> 7 & 0x18) | (opcode & 7)
         return (_Y if opcode & 8 else _Z), offset
-    low = opcode & 0xF
-    return _POINTERS.get(low) if opcode & 0xFC00 == 0x9000 else None
+    return _POINTERS.get(opcode & 0xF) if opcode & _LD_MASK == _LD else None
 
 
 def _effect(opcode: int, following: int) -> int:

@@ -4,7 +4,8 @@ What a machine of yasimavr records, from the library's own hooks.
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from types import ModuleType
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -18,6 +19,7 @@ _RAISED = {0x01, 0x41}
 _CANCELLED, _TAKEN, _RETURNED = 0x10, 0x20, 0x30
 _RETI_CYCLES = 4
 
+_Foreign: TypeAlias = Any  # an object of the library, which has no types
 Handler = Callable[[int, int, int], None]
 
 
@@ -33,7 +35,9 @@ class Recorder:
         watched: Data addresses whose writes are recorded as REGISTER.
     """
 
-    def __init__(self, core: Any, device: Any, probe: Any, chip: Mcu, watched: set[int]) -> None:
+    def __init__(
+        self, core: ModuleType, device: _Foreign, probe: _Foreign, chip: Mcu, watched: set[int]
+    ) -> None:
         self._core, self._probe, self._watched = core, probe, watched
         self._rows: list[tuple[int, int, int, int, int, int]] = []
         self.now = 0  # the cycle, kept by the machine; edge: that of the access that now happens
@@ -54,7 +58,7 @@ class Recorder:
         self._hooks: list[Any] = []
         self._hook_all(device, chip)
 
-    def _hook_all(self, device: Any, chip: Mcu) -> None:
+    def _hook_all(self, device: _Foreign, chip: Mcu) -> None:
         handlers: dict[int, Handler] = {_EEDR: self._on_mark, _UDR0: self._on_sent}
         for port in chip.ports:
             output = port.port.address
@@ -71,7 +75,7 @@ class Recorder:
             self._hook_writes(device, address, handler)
         self._hook_interrupts(device)
 
-    def _hook_writes(self, device: Any, address: int, handler: Handler) -> None:
+    def _hook_writes(self, device: _Foreign, address: int, handler: Handler) -> None:
         core, watched = self._core, address in self._watched
 
         class Hook(core.IORegHandler):  # type: ignore[misc, name-defined]  # a class of the library
@@ -81,17 +85,20 @@ class Recorder:
             def ioreg_peek_handler(self, _: object, value: int) -> int:
                 return value
 
-            def ioreg_write_handler(_, __: object, data: Any) -> None:  # noqa: N805
+            def ioreg_write_handler(_, __: object, data: _Foreign) -> None:  # noqa: N805
                 handler(address, data.value, data.old)
                 if watched:
                     self._record(Kind.REGISTER, self.edge, address, data.value)
 
         hook = Hook()
         self._hooks.append(hook)
-        place = core.reg_addr_t(address - _IO_OFFSET)
+        place = self._place(address)
         device.add_ioreg_handler(place, hook, core.bitmask_t(0), core.IORegister.BitMode.RW)
 
-    def _hook_interrupts(self, device: Any) -> None:
+    def _place(self, address: int) -> _Foreign:
+        return self._core.reg_addr_t(address - _IO_OFFSET)
+
+    def _hook_interrupts(self, device: _Foreign) -> None:
         core = self._core
         _, answer = device.ctlreq(core.IOCTL_INTR, core.CTLREQ_GET_SIGNAL)
         hook = core.CallableSignalHook(self._on_interrupt)
@@ -111,7 +118,7 @@ class Recorder:
         self._record(Kind.UART, self.edge, address, value)
 
     def _on_port(self, output: int, *_: int) -> None:
-        value = int(self._probe.read_ioreg(self._core.reg_addr_t(output - _IO_OFFSET), False))
+        value = int(self._probe.read_ioreg(self._place(output), False))  # noqa: FBT003 - no CPU
         if value != self._held.get(output, 0):
             self._held[output] = value
             self._record(Kind.PORT, self.edge, output, value)
@@ -121,7 +128,7 @@ class Recorder:
             if value & ~old & 1 << bit:
                 self._enabled_at[vector] = self.edge
 
-    def _on_interrupt(self, signal: Any, _: int) -> None:
+    def _on_interrupt(self, signal: _Foreign, _: int) -> None:
         state, vector = signal.data.as_uint(), int(signal.index)
         if state in _RAISED:
             self.raised.add(vector)
@@ -159,9 +166,15 @@ class Recorder:
         if fine and not self._frames:
             self._record(Kind.UNMASKED if on else Kind.MASKED, cycle, 0, 0)
 
+    def clear(self) -> None:
+        """
+        Forget what was recorded.
+        """
+        self._rows.clear()
+
     def events(self) -> Events:
         """
-        Return everything that was recorded so far.
+        Return everything that was recorded since `clear`.
         """
         return np.array(self._rows, dtype=EVENT)
 
