@@ -15,7 +15,7 @@ import typer
 from typer.core import TyperGroup
 
 from stepgen import __version__
-from stepgen.commands import boards, check, generate, matrix, plan, simulate, verify
+from stepgen.commands import boards, check, doctor, generate, matrix, plan, simulate, verify
 from stepgen.commands.report import WRONG, report_faults
 from stepgen.errors import Fault, StepgenError
 
@@ -84,6 +84,7 @@ app.command("generate", epilog=generate.EXAMPLE)(generate.generate)
 app.command("simulate", epilog=simulate.EXAMPLE)(simulate.simulate)
 app.command("verify", epilog=verify.EXAMPLE)(verify.verify)
 app.command("matrix", epilog=matrix.EXAMPLE)(matrix.matrix)
+app.command("doctor", epilog=doctor.EXAMPLE)(doctor.doctor)
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ from stepgen.errors import StepgenError
 
 PACKAGE = "avr8js"
 INSTALL = (
-    "pip install 'stepgen[simulators]' brings Node.js; "
+    "pip install 'stepgen[avr8js]' brings Node.js; "
     "npm install --global --prefix VENV avr8js@0.21.1 brings avr8js, VENV being the folder "
     "of the Python environment"
 )

@@ -49,9 +49,9 @@ def _instructions(wide: int) -> Judge:
 instructions_uno = point("instruction-cycles", "Cycles of each kind of instruction", "32")(
     _instructions(0)
 )
-instructions_mega = point("instruction-cycles-2560", "The same on the ATmega2560", "33", MEGA_CHIP)(
-    _instructions(1)
-)
+instructions_mega = point(
+    "instruction-cycles-2560", "Cycles of each kind of instruction, ATmega2560", "33", MEGA_CHIP
+)(_instructions(1))
 
 
 def _response(response: int) -> Judge:
@@ -80,9 +80,9 @@ def _response(response: int) -> Judge:
 
 
 response_uno = point("response", "Interrupt response of 4 cycles", "7.7.1")(_response(4))
-response_mega = point("response-2560", "Interrupt response of 5 cycles", "7.8.1", MEGA_CHIP)(
-    _response(5)
-)
+response_mega = point(
+    "response-2560", "Interrupt response of 5 cycles, ATmega2560", "7.8.1", MEGA_CHIP
+)(_response(5))
 
 
 @point("wake-up", "From idle sleep the response takes 4 cycles more", "7.7.1")
@@ -160,9 +160,9 @@ def _port_writes(port_h: list[int]) -> Judge:
 pin_writes = point(
     "pin-writes", "Ones written to PINx toggle those bits; sbi toggles one", "14.2.2"
 )(_port_writes([]))
-pin_writes_mega = point("pin-writes-2560", "The same beyond port G", "13.2.2", MEGA_CHIP)(
-    _port_writes([0x18, 0x08])
-)
+pin_writes_mega = point(
+    "pin-writes-2560", "Ones written to PINx beyond port G toggle", "13.2.2", MEGA_CHIP
+)(_port_writes([0x18, 0x08]))
 
 
 @point("port-write-cycles", "A port changes at the end of its instruction", "32")

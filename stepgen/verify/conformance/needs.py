@@ -64,11 +64,10 @@ def dependents(point: Point) -> tuple[str, ...]:
 
 def refusal(plan: Plan, simulator: Simulator, compiler: Compiler) -> str:
     """
-    Return why *simulator* must not be used for *plan*; "" if it may.
-
-    Raises:
-        StepgenError: It is not installed.
+    Return why *simulator* cannot be used for *plan*; "" if it can.
     """
+    if simulator.find_version() is None:
+        return f"{simulator.name} is not here; {simulator.install}"
     mcu = plan.board.mcu
     if mcu.name not in simulator.mcus:
         return f"{simulator.title} has no {mcu.title}"

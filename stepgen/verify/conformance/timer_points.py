@@ -32,16 +32,16 @@ def _period(mode: int) -> Judge:
     return judge
 
 
-period_fast = point("fast-pwm-period", "mode 15: period of p x (TOP + 1) cycles", "16.9.3")(
+period_fast = point("fast-pwm-period", "mode 15: period of p x (OCR1A + 1) cycles", "16.9.3")(
     _period(FAST)
 )
-period_fast_icr = point("fast-pwm-icr-period", "mode 14: the same, TOP in ICR1", "16.9.3")(
-    _period(FAST_ICR)
-)
-period_ctc = point("ctc-period", "mode 4: the same, by the compare flag", "16.9.2")(_period(CTC))
-period_ctc_icr = point("ctc-icr-period", "mode 12: the same, by the capture flag", "16.9.2")(
-    _period(CTC_ICR)
-)
+period_fast_icr = point(
+    "fast-pwm-icr-period", "mode 14: period of p x (ICR1 + 1) cycles", "16.9.3"
+)(_period(FAST_ICR))
+period_ctc = point("ctc-period", "mode 4: period of p x (OCR1A + 1) cycles", "16.9.2")(_period(CTC))
+period_ctc_icr = point(
+    "ctc-icr-period", "mode 12: capture flag each p x (ICR1 + 1) cycles", "16.9.2"
+)(_period(CTC_ICR))
 
 
 @point("prescaler-phase", "The prescaler runs on, whenever the clock is switched on", "16.4")
@@ -269,7 +269,7 @@ def flag_sbi(lab: Lab) -> Iterator[str]:
             yield f"OCF1B and OCF1A are {seen}, on the chip (1, 0)"
 
 
-@point("four-timers", "Timers 1, 3, 4 and 5 run at once", "17", MEGA_CHIP)
+@point("four-timers", "Timers 1, 3, 4 and 5 of the ATmega2560 run at once", "17", MEGA_CHIP)
 def four_timers(lab: Lab) -> Iterator[str]:
     """
     Each with its vector (table 14-1, numbers less one) and its period.

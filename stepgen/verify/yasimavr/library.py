@@ -8,7 +8,7 @@ from types import ModuleType
 
 from stepgen.errors import StepgenError
 
-INSTALL = "pip install 'stepgen[simulators]' brings it"
+INSTALL = "pip install 'stepgen[yasimavr]' compiles it, with Debian's g++ and python3-dev"
 
 
 def find_version() -> str | None:
