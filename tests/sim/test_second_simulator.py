@@ -16,9 +16,10 @@ from stepgen.verify.verification import verify_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
 # Speeds that change across prescalers, by calls and by update events; scenarios of theirs.
+BY_EVENTS = "motor: events each few milliseconds, by the interrupt, across prescalers"
 ACROSS_PRESCALERS = {
     "uno_motor_shield": "restart while running",
-    "uno_variable_speed": "motor: events each few milliseconds, by the interrupt, across prescalers",
+    "uno_variable_speed": BY_EVENTS,
 }
 
 

@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 from stepgen.errors import StepgenError
-from stepgen.verify.conformance.lab import PROGRAMS as conformance_programs
+from stepgen.verify.conformance import lab
 from stepgen.verify.events import EVENT, Events, Kind
 from stepgen.verify.simavr import Machine, build
 
-PROGRAMS = (Path(__file__).parent / "programs", conformance_programs)
+PROGRAMS = (Path(__file__).parent / "programs", lab.PROGRAMS)
 F_CPU_HZ = 16_000_000
 
 # Data addresses, ATmega328P datasheet chapter 31 "Register Summary".
