@@ -19,6 +19,13 @@ from stepgen.commands import boards, check, doctor, generate, matrix, plan, simu
 from stepgen.commands.report import WRONG, report_faults
 from stepgen.errors import Fault, StepgenError
 
+# What the extra `verify` installs, as Python imports it.
+_VERIFY_MODULES = {"cffi", "elftools", "numpy"}
+_NO_VERIFY = (
+    "this command simulates, and generating needs none of that: pip install 'stepgen[verify]' "
+    "brings what is missing"
+)
+
 
 class _Commands(TyperGroup):
     """
@@ -30,6 +37,10 @@ class _Commands(TyperGroup):
             return super().invoke(ctx)
         except StepgenError as error:
             report_faults(error.faults)
+        except ModuleNotFoundError as error:
+            if error.name not in _VERIFY_MODULES:
+                raise
+            report_faults([Fault("", "", _NO_VERIFY)])
         except OSError as error:
             if error.errno == errno.EPIPE:  # `stepgen boards mega | head`
                 raise

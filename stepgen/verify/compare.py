@@ -24,7 +24,7 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     result = Comparison(subject.name)
     runs = scene.trace.runs(subject.vector)
     edges = Oracle(subject, index, scene, runs).predict(result)
-    runs = _within_tolerance(runs, edges, scene.tolerance_cycles)
+    runs = within_tolerance(runs, edges, scene.tolerance_cycles)
     _compare_steps(subject, scene, runs, edges, result)
     _compare_calls(subject, scene, runs, edges, result)
     _compare_strangers(subject, scene, runs, result)
@@ -36,7 +36,7 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     return result
 
 
-def _within_tolerance(runs: list[Run], edges: Sequence[Edge], tolerance_cycles: int) -> list[Run]:
+def within_tolerance(runs: list[Run], edges: Sequence[Edge], tolerance_cycles: int) -> list[Run]:
     """
     Return *runs*, those that are raised within the tolerance of an edge as if raised at it.
     """

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from stepgen import api
 from stepgen.cli import app
 from stepgen.verify import doctor
 from stepgen.verify.simulators import AVR8JS, SIMAVR
@@ -68,6 +69,22 @@ def test_without_a_compiler_it_fails(monkeypatch: pytest.MonkeyPatch) -> None:
 
     assert result.exit_code == 1
     assert "none" in result.output
+
+
+def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    """
+    Exit code 2 and a way out, not a traceback, where only generating was installed.
+    """
+
+    def fail() -> None:
+        raise ModuleNotFoundError(name="cffi")
+
+    monkeypatch.setattr(api, "doctor", fail)
+
+    result = CliRunner().invoke(app, ["doctor"])
+
+    assert result.exit_code == 2
+    assert "pip install 'stepgen[verify]'" in result.output
 
 
 def test_an_unknown_simulator_is_refused(stepgen: Stepgen, pan: Path) -> None:

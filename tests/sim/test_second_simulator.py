@@ -9,9 +9,13 @@ import pytest
 
 from stepgen import api
 from stepgen.library.render import template_dir
+from stepgen.reference.sequences import Pattern
+from stepgen.reference.stimuli import Edge, EdgeKind
 from stepgen.spec import load_spec
+from stepgen.verify.compare import within_tolerance
 from stepgen.verify.simulators import AVR8JS, SIMAVR, YASIMAVR, Simulator
 from stepgen.verify.toolchain import default_compiler
+from stepgen.verify.trace import Run
 from stepgen.verify.verification import verify_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -72,3 +76,21 @@ def test_the_slow_step_of_a_wrong_library_is_seen(simulator: Simulator, tmp_path
     )
 
     assert "restart while running" in {check.name for check in report.checks if not check.passed}
+
+
+def test_the_tolerance_is_no_wider_than_it_says() -> None:
+    """
+    An interrupt one cycle off counts as the edge's with a tolerance of one, two cycles off not.
+    """
+    edge = Edge(1000, Pattern((True, False), (True, True)), 1, EdgeKind.STEP, 0)
+    raised = [998, 999, 1000, 1001, 1002]
+    runs = [Run(cycle, cycle, cycle, cycle + 40, ()) for cycle in raised]
+
+    assert [run.raised for run in within_tolerance(runs, [edge], 0)] == raised
+    assert [run.raised for run in within_tolerance(runs, [edge], 1)] == [
+        998,
+        1000,
+        1000,
+        1000,
+        1002,
+    ]

@@ -77,11 +77,16 @@ class Machine:
     ) -> None:
         self.close()
 
+    def __del__(self) -> None:
+        self.close()
+
     def close(self) -> None:
         """
         End the simulation.
         """
-        self._driver.close()
+        driver: Driver | None = getattr(self, "_driver", None)
+        if driver:
+            driver.close()
 
     @property
     def fine(self) -> bool:
