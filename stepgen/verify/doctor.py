@@ -32,14 +32,9 @@ class Diagnosis:
         """
         Tell whether specs can be verified: a compiler, and simavr meets all that any spec needs.
         """
-        return (
-            bool(self.verdicts)
-            and all(
-                row[SIMAVR.name].is_met
-                for point, row in self.verdicts.items()
-                if SIMAVR.name in row and dependents(point)
-            )
-            and self.simulators[SIMAVR.name] is not None
+        needed = [row for point, row in self.verdicts.items() if dependents(point)]
+        return bool(needed) and all(
+            SIMAVR.name in row and row[SIMAVR.name].is_met for row in needed
         )
 
     def failures(self) -> Iterator[tuple[str, Verdict]]:

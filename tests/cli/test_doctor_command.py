@@ -2,8 +2,10 @@
 ``stepgen doctor`` and ``stepgen verify --simulator``.
 """
 
+import dataclasses
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,41 +14,34 @@ from typer.testing import CliRunner
 
 from stepgen import api
 from stepgen.cli import app
-from stepgen.verify import doctor
-from stepgen.verify.simulators import AVR8JS, SIMAVR
+from stepgen.verify import avr8js, doctor
+from stepgen.verify.simulators import AVR8JS, SIMAVR, Simulator
 
 Stepgen = Callable[..., Any]
 
 
-@pytest.fixture
-def two_simulators(monkeypatch: pytest.MonkeyPatch) -> None:
-    """
-    Let there be simavr and avr8js only.
-    """
-    monkeypatch.setattr(doctor, "SIMULATORS", (SIMAVR, AVR8JS))
-
-
-def test_it_shows_tools_points_and_what_is_wrong(stepgen: Stepgen) -> None:
+def test_it_shows_tools_points_and_what_is_wrong() -> None:
     """
     Compilers and simulators with versions, a row for each point, what differs and who needs it.
     """
-    run = stepgen("doctor")
+    run = CliRunner().invoke(app, ["doctor"])
 
-    assert run.code == 0
+    assert run.exit_code == 0
     for text in ("gcc-5.4", "5.4.0", "simavr", "avr8js", "0.21.1", "corrected"):
-        assert text in run.out
+        assert text in run.output
     assert (
-        "  avr8js: mode 4: OCR1A below TCNT1 is met after a lap of 65 536 (ctc-wrap)\n" in run.out
+        "  avr8js: mode 4: OCR1A below TCNT1 is met after a lap of 65 536 (ctc-wrap)\n"
+        in run.output
     )
-    assert "    needed by: nothing\n" in run.out
-    assert "/usr" not in run.out
+    assert "    needed by: nothing\n" in run.output
+    assert "/usr" not in run.output
 
 
-def test_its_json_has_every_point(stepgen: Stepgen) -> None:
+def test_its_json_has_every_point() -> None:
     """
     `doctor --json` gives each point with its section, who needs it, and each verdict.
     """
-    shown = json.loads(stepgen("doctor", "--json").out)
+    shown = json.loads(CliRunner().invoke(app, ["doctor", "--json"]).output)
     by_name = {point["name"]: point for point in shown["points"]}
 
     assert shown["fit"] is True
@@ -58,7 +53,6 @@ def test_its_json_has_every_point(stepgen: Stepgen) -> None:
     assert buffer["simulators"]["avr8js"] == {"verdict": "ok", "findings": []}
 
 
-@pytest.mark.usefixtures("two_simulators")
 def test_without_a_compiler_it_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     """
     Exit code 1 when nothing can be verified here.
@@ -69,6 +63,27 @@ def test_without_a_compiler_it_fails(monkeypatch: pytest.MonkeyPatch) -> None:
 
     assert result.exit_code == 1
     assert "none" in result.output
+
+
+GONE = dataclasses.replace(SIMAVR, find_version=lambda: None)
+# It calls itself simavr, but its prescaler restarts with the clock, and so on.
+LIAR = dataclasses.replace(SIMAVR, open=partial(avr8js.Machine, correct=False))
+
+
+@pytest.mark.parametrize("simavr", [GONE, LIAR], ids=["missing", "unlike the chip"])
+def test_without_a_right_simavr_it_fails(
+    monkeypatch: pytest.MonkeyPatch, simavr: Simulator
+) -> None:
+    """
+    Exit code 1 where simavr is missing or fails a point that specs depend on.
+    """
+    monkeypatch.setattr(doctor, "SIMULATORS", (simavr, AVR8JS))
+
+    result = CliRunner().invoke(app, ["doctor"])
+
+    assert result.exit_code == 1
+    assert ("not here" in result.output) == (simavr is GONE)
+    assert ("    needed by: timing fast-pwm\n" in result.output) == (simavr is LIAR)
 
 
 def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
