@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from stepgen import api
 from stepgen.cli import app
 from stepgen.verify import avr8js, doctor
+from stepgen.verify.report import SpecReport
 from stepgen.verify.simulators import AVR8JS, SIMAVR, Simulator
 
 Stepgen = Callable[..., Any]
@@ -110,3 +111,24 @@ def test_an_unknown_simulator_is_refused(stepgen: Stepgen, pan: Path) -> None:
 
     assert run.code == 2
     assert "choose one of simavr, avr8js, yasimavr, or all" in run.err
+
+
+def test_all_runs_on_each_simulator_that_fits(monkeypatch: pytest.MonkeyPatch, pan: Path) -> None:
+    """
+    `--simulator all` gives a report for each usable simulator and names the others.
+    """
+    reasons = {"simavr": "", "avr8js": "", "yasimavr": "yasimavr 0.1.6 has no ATmega2560"}
+
+    def verify(path: Path, *, simulator: str, **_: object) -> SpecReport:
+        report = SpecReport(str(path), "gcc-5.4", simulator)
+        report.check("steps", (), "fine")
+        return report
+
+    monkeypatch.setattr(api, "usable_simulators", lambda *_, **__: reasons)
+    monkeypatch.setattr(api, "verify", verify)
+
+    result = CliRunner().invoke(app, ["verify", str(pan), "--simulator", "all", "--json"])
+
+    assert result.exit_code == 0
+    assert [one["simulator"] for one in json.loads(result.stdout)] == ["simavr", "avr8js"]
+    assert f"{pan}: left out: yasimavr 0.1.6 has no ATmega2560" in result.stderr
