@@ -214,13 +214,15 @@ def usable_simulators(path: Path, *, compiler: str | None = None) -> dict[str, s
     return {simulator.name: refusal(decided, simulator, chosen) for simulator in SIMULATORS}
 
 
-def doctor() -> "Diagnosis":
+def doctor(*, track: Callable[[Sequence[Any]], Iterable[Any]] = iter) -> "Diagnosis":
     """
     Return which compilers and simulators are here, and how far each simulator can be trusted.
+
+    *track* passes the points of the conformance suite on one by one, to show progress.
     """
     from stepgen.verify.doctor import diagnose  # noqa: PLC0415 - as in verify
 
-    return diagnose()
+    return diagnose(track)
 
 
 def simulate(

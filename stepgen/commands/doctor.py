@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stepgen import api
-from stepgen.commands.report import FAILED, print_tables, say
+from stepgen.commands.report import FAILED, print_tables, progress, say
 
 if TYPE_CHECKING:
     from stepgen.verify.doctor import Diagnosis
@@ -27,7 +27,8 @@ def doctor(
     needs this point is verified on it. Exit code 1 unless there is a compiler and simavr meets
     every point that a spec depends on.
     """
-    found = api.doctor()
+    with progress("trying the simulators") as track:
+        found = api.doctor(track=track)
     if as_json:
         say(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
     else:

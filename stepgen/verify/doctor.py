@@ -2,7 +2,7 @@
 What is installed, and how far each simulator can be trusted.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,14 +71,17 @@ class Diagnosis:
         }
 
 
-def diagnose() -> Diagnosis:
+def diagnose(track: Callable[[Sequence[Point]], Iterable[Point]] = iter) -> Diagnosis:
     """
     Look for compilers and simulators and run the conformance suite on each simulator.
+
+    *track* passes the points on one by one, to show progress.
     """
     compilers = find_compilers()
     versions = {simulator.name: simulator.find_version() for simulator in SIMULATORS}
     here = [simulator for simulator in SIMULATORS if versions[simulator.name]]
-    verdicts = {point: _row(point, here, compilers[0]) for point in points()} if compilers else {}
+    tried = track(points()) if compilers else ()
+    verdicts = {point: _row(point, here, compilers[0]) for point in tried}
     return Diagnosis(compilers, versions, verdicts)
 
 

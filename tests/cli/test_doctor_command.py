@@ -92,7 +92,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
     Exit code 2 and a way out, not a traceback, where only generating was installed.
     """
 
-    def fail() -> None:
+    def fail(**_: object) -> None:
         raise ModuleNotFoundError(name="cffi")
 
     monkeypatch.setattr(api, "doctor", fail)
