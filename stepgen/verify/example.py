@@ -10,7 +10,7 @@ from stepgen.verify.bench import Answer, Call, CallKind, watched_registers
 from stepgen.verify.compare import Scene, compare
 from stepgen.verify.scenarios import BACK, DRIVE
 from stepgen.verify.shared_pins import compare_shared
-from stepgen.verify.simavr import Machine
+from stepgen.verify.simulators import SIMAVR
 from stepgen.verify.subject import Subject, subjects
 from stepgen.verify.trace import Trace
 
@@ -27,7 +27,7 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
     the timer of a motor at rest, from a stretch with interrupts off.
     """
     f_cpu_hz = plan.board.f_cpu_hz
-    with Machine(
+    with SIMAVR.open(
         elf, mcu=plan.board.mcu.name, f_cpu_hz=f_cpu_hz, watch=watched_registers(plan)
     ) as machine:
         machine.fine = True

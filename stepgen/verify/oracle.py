@@ -71,6 +71,7 @@ class Scene:
     answers: Sequence[Answer]
     plan: Plan
     until_cycle: int
+    tolerance_cycles: int = 0
 
 
 class _Order(IntEnum):
@@ -155,8 +156,9 @@ class Oracle:
         return self._model.needs
 
     def _service_cycle(self, deadline: int) -> int:
-        place = bisect_left(self._raised, deadline)
-        if place < len(self._runs) and self._raised[place] == deadline:
+        tolerance = self._scene.tolerance_cycles
+        place = bisect_left(self._raised, deadline - tolerance)
+        if place < len(self._runs) and self._raised[place] <= deadline + tolerance:
             return self._runs[place].entered
         # Nobody served it. A call that masks the interrupts before it could be served comes first.
         return self._scene.trace.served_from(deadline)

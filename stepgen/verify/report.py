@@ -40,11 +40,12 @@ class MotorFigures:
 @dataclass
 class SpecReport:
     """
-    The outcome of verifying one spec with one compiler.
+    The outcome of verifying one spec with one compiler on one simulator.
     """
 
     spec: str
     compiler: str
+    simulator: str
     checks: list[Check] = field(default_factory=list)
     motors: dict[str, MotorFigures] = field(default_factory=dict)
     flash_bytes: int = 0
@@ -71,6 +72,7 @@ class SpecReport:
         return {
             "spec": self.spec,
             "compiler": self.compiler,
+            "simulator": self.simulator,
             "passed": self.passed,
             "checks": [vars(check) for check in self.checks],
             "motors": {

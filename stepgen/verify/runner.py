@@ -11,6 +11,7 @@ from stepgen.verify.bench import Answer, Bench, Call, Loop
 from stepgen.verify.compare import Comparison, Scene, compare
 from stepgen.verify.scenarios import Scenario
 from stepgen.verify.shared_pins import compare_shared
+from stepgen.verify.simulators import SIMAVR, Simulator
 from stepgen.verify.subject import subjects
 from stepgen.verify.trace import Trace
 
@@ -51,14 +52,20 @@ class Outcome:
         return of_motors + self.shared_findings
 
 
-def run_scenario(loaded: LoadedSpec, plan: Plan, elf: Path, scenario: Scenario) -> Outcome:
+def run_scenario(
+    loaded: LoadedSpec,
+    plan: Plan,
+    elf: Path,
+    scenario: Scenario,
+    simulator: Simulator = SIMAVR,
+) -> Outcome:
     """
     Run *scenario* on the bench *elf* and compare every motor with the model.
 
     Raises:
         StepgenError: The sketch crashed or hangs.
     """
-    with Bench(plan, elf) as bench:
+    with Bench(plan, elf, simulator) as bench:
         bench.set_loop(scenario.loop)
         for action in scenario.actions:
             if isinstance(action, Call):
@@ -67,7 +74,8 @@ def run_scenario(loaded: LoadedSpec, plan: Plan, elf: Path, scenario: Scenario) 
                 bench.wait(action.cycles)
         trace = Trace(bench.events(), plan.board.mcu)
         answers = tuple(bench.answers)
-        scene = Scene(trace, answers, plan, bench.machine.cycle)
+        cycle, tolerance = bench.machine.cycle, simulator.tolerance_cycles
+        scene = Scene(trace, answers, plan, cycle, tolerance)
         motors = subjects(loaded, plan)
         comparisons = tuple(compare(motor, i, scene) for i, motor in enumerate(motors))
         return Outcome(

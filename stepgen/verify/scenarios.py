@@ -40,6 +40,13 @@ class Scenario:
     loop: Loop
     actions: tuple[Action, ...]
 
+    @property
+    def cycles(self) -> int:
+        """
+        Return the simulated time of its waits; calls add a little.
+        """
+        return sum(action.cycles for action in self.actions if isinstance(action, Wait))
+
 
 def standard_scenarios(plan: Plan) -> tuple[Scenario, ...]:
     """

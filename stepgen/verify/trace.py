@@ -9,7 +9,7 @@ import numpy as np
 
 from stepgen.devices import Mcu
 from stepgen.reference.core_clock import millis_after
-from stepgen.verify.simavr.events import Events, Kind
+from stepgen.verify.events import Events, Kind
 
 _CLOCK_SELECT = 0b111
 _PRESCALERS = {1: 1, 2: 8, 3: 64, 4: 256, 5: 1024}  # CSn2..0, datasheet

@@ -8,12 +8,14 @@ from pathlib import Path
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
 from stepgen.spec import LoadedSpec
+from stepgen.verify.conformance.needs import refuse
 from stepgen.verify.example import run_example
 from stepgen.verify.firmware import build_firmware
 from stepgen.verify.report import MotorFigures, SpecReport
 from stepgen.verify.runner import Outcome, is_asleep, run_scenario
 from stepgen.verify.scenarios import Scenario, standard_scenarios
 from stepgen.verify.sharing_scenarios import sharing_scenarios
+from stepgen.verify.simulators import SIMAVR, Simulator
 from stepgen.verify.toolchain import Compiler
 from stepgen.verify.update_scenarios import update_scenarios
 
@@ -24,6 +26,7 @@ def verify_spec(
     loaded: LoadedSpec,
     compiler: Compiler,
     *,
+    simulator: Simulator = SIMAVR,
     templates: Path | None = None,
     track: Track = iter,
 ) -> SpecReport:
@@ -33,14 +36,18 @@ def verify_spec(
     Args:
         loaded: The spec.
         compiler: Which avr-gcc builds it.
+        simulator: What runs it. A slow one leaves out the scenarios that are too long for it,
+            and the example.
         templates: Templates in place of stepgen's own, to see that a mutant is caught.
         track: Passes the scenarios on one by one, to show progress.
 
     Raises:
-        StepgenError: The spec is refused, does not compile, or its firmware crashes or hangs.
+        StepgenError: The spec is refused, does not compile, or its firmware crashes or hangs; or
+            *simulator* does not meet a point of the conformance suite that the spec depends on.
     """
     plan = make_plan(loaded)
-    report = SpecReport(str(loaded.document.path), compiler.name)
+    refuse(plan, str(loaded.document.path), simulator, compiler)
+    report = SpecReport(str(loaded.document.path), compiler.name, simulator.title)
     firmware = build_firmware(plan, loaded.document.text, compiler, templates)
     report.flash_bytes, report.ram_bytes = firmware.flash_bytes, firmware.ram_bytes
     report.check(
@@ -56,12 +63,22 @@ def verify_spec(
         )
         for motor in plan.motors
     }
-    scenarios = (*standard_scenarios(plan), *update_scenarios(plan), *sharing_scenarios(plan))
-    for scenario in track(scenarios):
-        _judge(run_scenario(loaded, plan, firmware.bench, scenario), plan, report)
-    findings = run_example(loaded, plan, firmware.example)
-    report.check("the example sketch", findings, "every step as the model says")
+    for scenario in track(_scenarios(plan, simulator)):
+        outcome = run_scenario(loaded, plan, firmware.bench, scenario, simulator)
+        _judge(outcome, plan, report)
+    if simulator.longest_scenario_cycles is None:
+        findings = run_example(loaded, plan, firmware.example)
+        report.check("the example sketch", findings, "every step as the model says")
     return report
+
+
+def _scenarios(plan: Plan, simulator: Simulator) -> tuple[Scenario, ...]:
+    """
+    Return the scenarios of *plan* that are not too long for *simulator*.
+    """
+    longest = simulator.longest_scenario_cycles
+    every = (*standard_scenarios(plan), *update_scenarios(plan), *sharing_scenarios(plan))
+    return tuple(one for one in every if longest is None or one.cycles <= longest)
 
 
 def _judge(outcome: Outcome, plan: Plan, report: SpecReport) -> None:

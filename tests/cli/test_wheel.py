@@ -82,7 +82,7 @@ def test_the_wheel_holds_all_that_stepgen_reads(wheel: Path) -> None:
     templates = {
         name.removeprefix("_templates/") for name in package if name.startswith("_templates/")
     }
-    assert sources("stepgen", "*.py", "*.c", "*.h", "py.typed") <= package
+    assert sources("stepgen", "*.py", "*.c", "*.h", "*.js", "py.typed") <= package
     assert {"py.typed", "verify/simavr/harness.c", "verify/simavr/api.h"} <= package
     assert templates == sources("templates", "*")
     assert {name.split("/")[0] for name in names} == {

@@ -18,8 +18,8 @@ from stepgen.plan.model import Plan
 from stepgen.reference.contract import Control
 from stepgen.reference.core_clock import millis_after
 from stepgen.verify.bench import Bench, Call, CallKind
+from stepgen.verify.events import Kind
 from stepgen.verify.firmware import build_firmware
-from stepgen.verify.simavr.events import Kind
 from stepgen.verify.toolchain import default_compiler
 from stepgen.verify.trace import Trace
 

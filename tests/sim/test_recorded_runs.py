@@ -13,8 +13,8 @@ import pytest
 from stepgen import api
 from stepgen.reference.contract import Status
 from stepgen.verify.bench import Bench, Call, CallKind, Loop
+from stepgen.verify.events import Kind
 from stepgen.verify.firmware import build_firmware
-from stepgen.verify.simavr.events import Kind
 from stepgen.verify.toolchain import default_compiler
 
 SPEC = Path(__file__).parents[2] / "specs" / "uno_variable_speed.yaml"

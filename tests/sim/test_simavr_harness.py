@@ -1,5 +1,5 @@
 """
-The simulator behaves as the datasheets of the ATmega328P, ATmega1280 and ATmega2560 say.
+What the harness of simavr adds to the conformance suite: its recording, and its timers at random.
 
 Section numbers are those of the ATmega328P datasheet (DS40002061), chapter 16 "16-bit
 Timer/Counter1 with PWM" and chapter 12 "Interrupts" with 7.7 "Reset and Interrupt Handling".
@@ -15,10 +15,11 @@ import numpy as np
 import pytest
 
 from stepgen.errors import StepgenError
-from stepgen.verify.simavr import Kind, Machine, build
-from stepgen.verify.simavr.events import EVENT, Events
+from stepgen.verify.conformance import lab
+from stepgen.verify.events import EVENT, Events, Kind
+from stepgen.verify.simavr import Machine, build
 
-PROGRAMS = Path(__file__).parent / "programs"
+PROGRAMS = (Path(__file__).parent / "programs", lab.PROGRAMS)
 F_CPU_HZ = 16_000_000
 
 # Data addresses, ATmega328P datasheet chapter 31 "Register Summary".
@@ -44,7 +45,8 @@ def start(tmp_path: Path) -> Start:
     ) -> Machine:
         elf = tmp_path / f"{program}.elf"
         defines = [f"-D{name}={value}" for name, value in macros.items()]
-        source = str(PROGRAMS / f"{program}.c")
+        name = f"{program}.c"
+        source = next(str(folder / name) for folder in PROGRAMS if (folder / name).is_file())
         subprocess.run(
             ["avr-gcc", f"-mmcu={mcu}", "-Os", "-Wall", "-Werror", *defines, source, "-o", elf],
             check=True,
@@ -178,19 +180,6 @@ def random_writes(rng: random.Random) -> Iterator[bytes]:
         yield struct.pack("<HBB", low, value & 0xFF, wait)
 
 
-@pytest.mark.parametrize("prescaler", CLOCKS)
-@pytest.mark.parametrize("mode", [CTC, CTC_ICR, FAST_ICR, FAST])
-def test_period_is_prescaler_times_top_plus_one(start: Start, mode: int, prescaler: int) -> None:
-    """
-    In CTC and fast PWM, with TOP in OCR1A or ICR1, flags are exactly p (TOP + 1) cycles apart.
-    """
-    machine = start("periodic", MODE=mode, CLOCK=CLOCKS[prescaler], TOP_VALUE=251)
-    machine.run_until(10 * prescaler * 252)
-
-    # 16.9.2 and 16.9.3: the counter takes the TOP + 1 values 0 .. TOP.
-    assert set(gaps(machine.events(), Kind.RAISE)) == {prescaler * 252}
-
-
 @pytest.mark.parametrize("mode", [0, 1, CTC, FAST])
 def test_looking_at_the_count_changes_nothing(start: Start, mode: int) -> None:
     """
@@ -255,88 +244,6 @@ def test_random_writes_do_what_a_plain_model_does(start: Start, seed: int) -> No
     assert machine.register(TCNT1L) | machine.register(TCNT1L + 1) << 8 == model.count
 
 
-@pytest.mark.parametrize("prescaler", CLOCKS)
-@pytest.mark.parametrize("nops", [0, 1, 5, 100, 1000])
-def test_prescaler_runs_freely(start: Start, prescaler: int, nops: int) -> None:
-    """
-    The timer clock ticks at multiples of the prescaler since reset, whenever it is switched on.
-    """
-    machine = start(
-        "periodic", watch=(TCCR1B,), MODE=CTC, CLOCK=CLOCKS[prescaler], TOP_VALUE=20, NOPS=nops
-    )
-    machine.run_until(60 * prescaler + 2000)
-    first = cycles(machine.events(), Kind.RAISE)[0]
-    clock_on = cycles(machine.events(), Kind.REGISTER)[-1]
-
-    # 16.4 "Prescaler Reset": it operates independently of the clock select. The flag comes
-    # with the 21st tick (20.. to 0) after the write.
-    assert first == (clock_on // prescaler + 21) * prescaler
-
-
-def test_fast_pwm_takes_a_new_top_one_period_later(start: Start) -> None:
-    """
-    A new OCR1A in mode 15 leaves the running period alone and counts from the next one on.
-    """
-    machine = start("change", MODE=FAST, FROM=999, TO=499, DELAY=0, CLOCK_TO=1, watch=(OCR1AL,))
-    machine.run_until(8000)
-    raised = cycles(machine.events(), Kind.RAISE)
-    written = cycles(machine.events(), Kind.REGISTER)[-1]
-    before = [cycle for cycle in raised if cycle <= written]
-    after = [before[-1], *(cycle for cycle in raised if cycle > written)]
-
-    # 16.9.3: the compare register is updated at the clock cycle where TCNT1 is set to BOTTOM.
-    assert np.diff(before).tolist() == [1000, 1000]
-    assert np.diff(after).tolist()[:3] == [1000, 500, 500]
-
-
-def test_new_prescaler_with_the_old_top_is_a_slow_step(start: Start) -> None:
-    """
-    From /1 with TOP 9999 to /8 with TOP 99 the step between has 10 000 ticks of the slow clock.
-    """
-    change = {"MODE": FAST, "FROM": 9999, "TO": 99, "DELAY": 5000, "CLOCK_TO": 2}
-    machine = start("change", watch=(TCNT1L,), RESTART=1, **change)
-    machine.run_until(200_000)
-    raised = cycles(machine.events(), Kind.RAISE)
-    restarted = cycles(machine.events(), Kind.REGISTER)[-1]
-    last_fast = max(cycle for cycle in raised if cycle <= restarted)
-    slow, *rest = np.diff([cycle for cycle in raised if cycle >= last_fast]).tolist()
-
-    # TCNT1 = 0 at `restarted`; TOP stays 9999 until BOTTOM: the 10 000th tick of the /8 clock
-    # after it ends the period. Then TOP is 99.
-    assert slow == (restarted // 8 + 10_000) * 8 - last_fast
-    assert slow == pytest.approx(85_110, abs=100)
-    assert set(rest) == {800}
-
-
-def test_new_prescaler_keeps_the_count(start: Start) -> None:
-    """
-    Writing the clock select bits in mid period goes on from the count reached so far.
-    """
-    change = {"MODE": FAST, "FROM": 9999, "TO": 99, "DELAY": 5000, "CLOCK_TO": 2}
-    machine = start("change", watch=(TCCR1B,), **change)
-    machine.run_until(200_000)
-    raised = cycles(machine.events(), Kind.RAISE)
-    switched = cycles(machine.events(), Kind.REGISTER)[-1]
-    last_fast = max(cycle for cycle in raised if cycle <= switched)
-    count = switched - last_fast
-
-    # 9999 - count ticks of the new clock to reach TOP, one more to leave it.
-    assert raised[raised.index(last_fast) + 1] == (switched // 8 + 10_000 - count) * 8
-
-
-def test_ctc_with_a_compare_value_below_the_count_wraps(start: Start) -> None:
-    """
-    OCR1A written below TCNT1 in mode 4 is met only after the counter has passed MAX.
-    """
-    machine = start("change", MODE=CTC, FROM=999, TO=10, DELAY=100, CLOCK_TO=1)
-    machine.run_until(100_000)
-
-    # 16.9.2: "the counter will miss the compare match. The counter will then have to count to
-    # its maximum value (0xFFFF) and wrap around": 65 536 ticks, and 11 to leave 10.
-    lengths = gaps(machine.events(), Kind.RAISE)
-    assert lengths[:4] == [1000, 1000, 65_536 + 11, 11]
-
-
 @pytest.mark.parametrize(
     ("mcu", "vector", "response"),
     [("atmega328p", OVF, 4), ("atmega1280", 20, 4), ("atmega2560", 20, 5)],
@@ -360,23 +267,6 @@ def test_interrupt_response(start: Start, mcu: str, vector: int, response: int) 
     assert (left["since"] == entered["cycle"][:count]).all()
     # The loop is a rjmp of 2 cycles: the flag waits for its end at most.
     assert set(entered["cycle"] - entered["since"]) <= {0, 1}
-
-
-@pytest.mark.parametrize("mcu", ["atmega1280", "atmega2560"])
-def test_mega_has_four_timers(start: Start, mcu: str) -> None:
-    """
-    Timers 1, 3, 4 and 5 of the ATmega2560 run at once, each with its vector and period.
-    """
-    machine = start("four_timers", mcu=mcu)
-    machine.run_until(100_000)
-    raised = of_kind(machine.events(), Kind.RAISE)
-    periods = {
-        vector: set(np.diff(raised["cycle"][raised["source"] == vector]).tolist())
-        for vector in set(raised["source"].tolist())
-    }
-
-    # Table 14-1 of the ATmega2560's datasheet, numbers less one.
-    assert periods == {20: {1000}, 35: {2000}, 45: {3000}, 50: {4000}}
 
 
 def test_simavrs_own_timer_wakes_with_the_same_delay(start: Start) -> None:
@@ -431,19 +321,6 @@ def test_masked_flag_stays_pending_once(start: Start) -> None:
     assert entered["masked_until"][0] > second["cycle"]
 
 
-def test_one_instruction_between_sei_and_cli_is_a_window(start: Start) -> None:
-    """
-    `sei; nop; cli` lets a pending interrupt in after the nop, `sei; cli` does not.
-    """
-    machine = start("masked")
-    assert machine.run_until_mark(6, limit_cycles=20_000)
-    at = marks(machine)
-    entered = cycles(machine.events(), Kind.ISR_ENTER)
-
-    assert len([cycle for cycle in entered if at[3] < cycle < at[4]]) == 1
-    assert not [cycle for cycle in entered if at[5] < cycle < at[6]]
-
-
 def test_flag_fires_when_its_enable_bit_is_set(start: Start) -> None:
     """
     With OCIE1A clear a raised flag waits; setting the bit lets the interrupt in at once.
@@ -477,66 +354,6 @@ def test_writing_ones_to_pinx_toggles_those_bits(start: Start, mcu: str) -> None
     assert port["source"][0] == DDRB
     if mcu != "atmega328p":  # port H is beyond in and out: 0x102
         assert [int(v) for v in port["value"][port["source"] == 0x102]] == [0x18, 0x08]
-
-
-def test_port_events_are_stamped_at_the_end_of_their_instruction(start: Start) -> None:
-    """
-    From one port write to the next it is the cycles of the instructions between.
-    """
-    machine = start("ports")
-    machine.run_until_mark(1, limit_cycles=1000)
-    out, sbi, sts, sbi_again = gaps(machine.events(), Kind.PORT)[1:]
-
-    # ldi + out; sbi; cbi + ldi + sts; sbi (chapter 32: sbi, cbi and sts take 2 cycles).
-    assert (out, sbi, sts, sbi_again) == (2, 2, 5, 2)
-
-
-def test_16_bit_registers_share_one_temp_byte(start: Start) -> None:
-    """
-    Reading TCNT1L latches the high byte in TEMP, which a write to OCR1AH replaces.
-    """
-    machine = start("registers")
-    assert machine.run_until_mark(1, limit_cycles=10_000)
-    held = machine.read_ram(machine.symbol("bytes"), 6)
-
-    # 16.3: one TEMP per timer; OCR1A is read without it. TCNT1 = 0x1234, then OCR1AH = 0x56.
-    # 16.11.7: ICR1 can only be written in a mode where it is TOP, so it is still 0.
-    assert list(held) == [0x34, 0x56, 0x78, 0x56, 0, 0]
-
-
-def test_writing_the_count_blocks_the_next_compare(start: Start) -> None:
-    """
-    TCNT1 = OCR1A raises nothing, TCNT1 = OCR1A - 1 does; a count written at rest is kept.
-    """
-    machine = start("registers")
-    assert machine.run_until_mark(1, limit_cycles=10_000)
-    blocked, passed, _ = machine.read_ram(machine.symbol("flags"), 3)
-
-    # 16.7.2; OCF1A is bit 1.
-    assert blocked & 2 == 0
-    assert passed & 2 == 2
-
-
-def test_sbi_clears_one_flag_only(start: Start) -> None:
-    """
-    `sbi TIFR1, 1` clears OCF1A and leaves OCF1B raised.
-    """
-    machine = start("registers")
-    assert machine.run_until_mark(1, limit_cycles=10_000)
-
-    assert machine.read_ram(machine.symbol("flags"), 3)[2] & 0b110 == 0b100
-
-
-def test_counter_runs_from_write_to_write(start: Start) -> None:
-    """
-    Between two clock select writes 10 cycles apart the counter at /1 ticks 10 times.
-    """
-    machine = start("registers")
-    assert machine.run_until_mark(1, limit_cycles=10_000)
-    raw = machine.read_ram(machine.symbol("counts"), 4)
-
-    # Eight nops and the sts of 2 cycles; stopped, both reads are the same.
-    assert [int.from_bytes(raw[i : i + 2], "little") for i in (0, 2)] == [1010, 1010]
 
 
 def test_serial_line_goes_both_ways(start: Start) -> None:
@@ -612,33 +429,6 @@ def test_fine_recording_changes_no_cycle(start: Start) -> None:
         runs.append(events[~np.isin(events["kind"], [Kind.MASKED, Kind.UNMASKED])])
 
     assert (runs[0] == runs[1]).all()
-
-
-@pytest.mark.parametrize(("mcu", "wide"), [("atmega328p", 0), ("atmega1280", 0), ("atmega2560", 1)])
-def test_instructions_take_the_cycles_of_the_datasheet(start: Start, mcu: str, wide: int) -> None:
-    """
-    Each kind of instruction takes the cycles of the instruction set summary.
-    """
-    machine = start("instructions", mcu=mcu)
-    assert machine.run_until_mark(3, limit_cycles=1000)
-    # Every other gap, less the cycle of the out that is the second mark.
-    taken = [gap - 1 for gap in gaps(machine.events(), Kind.MARK)[::2]]
-
-    # In the order of instructions.c; `wide` is the third byte of the ATmega2560's PC.
-    assert taken == [
-        *(1, 1, 1, 1),  # nop, add, movw, ldi
-        *(2, 2, 2),  # adiw, mul, sbiw
-        *(2, 2, 2, 2, 2, 2),  # lds, sts, ld X, ld -X, std Y+q, ldd Y+q
-        *(3, 3),  # lpm Z, lpm Z+
-        *(2, 2, 1, 1),  # push, pop, in, out
-        *(2, 2),  # sbi, cbi
-        *(2, 3, 2),  # rjmp, jmp, ijmp
-        *(1, 2),  # brne: not taken, taken
-        *(1, 2, 3),  # sbrs: no skip, skip of one word, of two
-        *(1, 2, 3),  # cpse: the same
-        *(1, 2, 3),  # sbis: the same
-        *(3 + 4 + 2 * wide, 4 + 4 + 2 * wide, 3 + 4 + 2 * wide),  # rcall, call, icall; each ret
-    ]
 
 
 @pytest.mark.parametrize("macros", [{}, {"LOST": 1}])

@@ -2,7 +2,7 @@
 libsimavr, driven so that it behaves as the chip does, cycle by cycle.
 """
 
-from stepgen.verify.simavr.events import EVENT, Event, Kind
+from stepgen.verify.simavr.build import INSTALL, find_version
 from stepgen.verify.simavr.machine import Machine
 
-__all__ = ["EVENT", "Event", "Kind", "Machine"]
+__all__ = ["INSTALL", "Machine", "find_version"]

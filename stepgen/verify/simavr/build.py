@@ -8,6 +8,7 @@ import hashlib
 import importlib.util
 import io
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -22,6 +23,9 @@ from stepgen.errors import StepgenError
 
 _HERE = Path(__file__).parent
 _DEBIAN_PACKAGES = "gcc libsimavr-dev libelf-dev python3-dev"
+INSTALL = f"on Debian: apt install {_DEBIAN_PACKAGES}"
+_PACKAGE_FILES = ("lib/*/pkgconfig/simavr.pc", "lib/pkgconfig/simavr.pc")
+_UNKNOWN = "of unknown version"
 _FLAGS = ("-std=gnu11", "-O2", "-fPIC", "-shared", "-Wall", "-Wextra")
 
 
@@ -38,6 +42,18 @@ def cache_dir() -> Path:
     """
     base = os.environ.get("XDG_CACHE_HOME")
     return (Path(base) if base else Path.home() / ".cache") / "stepgen"
+
+
+def find_version() -> str | None:
+    """
+    Return the version of libsimavr that its pkg-config file states, None without libsimavr.
+    """
+    for base in (Path("/usr/local"), Path("/usr")):
+        for pattern in _PACKAGE_FILES:
+            for path in base.glob(pattern):
+                found = re.search(r"^Version: *(\S+)", path.read_text(), re.MULTILINE)
+                return found[1] if found else _UNKNOWN
+    return _UNKNOWN if Path("/usr/include/simavr").is_dir() else None
 
 
 def _compiler() -> list[str]:
@@ -81,13 +97,12 @@ def _run_compiler(command: list[str]) -> None:
     except FileNotFoundError:
         raise StepgenError.of(
             f"{command[0]} is not here, and the simulator harness is compiled on first use; "
-            f"on Debian: apt install {_DEBIAN_PACKAGES}"
+            f"{INSTALL}"
         ) from None
     if done.returncode:
         detail = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr)
         raise StepgenError.of(
-            f"the simulator harness does not compile ({detail.strip()}); "
-            f"on Debian: apt install {_DEBIAN_PACKAGES}"
+            f"the simulator harness does not compile ({detail.strip()}); {INSTALL}"
         )
 
 

@@ -10,9 +10,9 @@ from typing import Any, Self
 import numpy as np
 
 from stepgen.errors import StepgenError
+from stepgen.verify.elf import read_firmware
+from stepgen.verify.events import EVENT, Events
 from stepgen.verify.simavr import build
-from stepgen.verify.simavr.elf import read_firmware
-from stepgen.verify.simavr.events import EVENT, Events
 
 _NO_MARK = -1
 _FIRST_RAM_ADDRESS = 0x100

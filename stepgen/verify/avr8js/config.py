@@ -1,0 +1,125 @@
+"""
+The chip as avr8js wants it described: made from the device tables, the same for every chip.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+from stepgen.devices import Mcu, Timer16, Vector
+
+_WORDS_PER_VECTOR = 2
+_TIMER0 = {"TIFR": 0x35, "OCRA": 0x47, "OCRB": 0x48, "TCNT": 0x46, "TCCRA": 0x44, "TCCRB": 0x45}
+_TIMER0_TIMSK = 0x6E
+_USART0 = {"UCSRA": 0xC0, "UCSRB": 0xC1, "UCSRC": 0xC2, "UBRRL": 0xC4, "UBRRH": 0xC5, "UDR": 0xC6}
+_DIVIDERS = {0: 0, 1: 1, 2: 8, 3: 64, 4: 256, 5: 1024, 6: 0, 7: 0}
+# Bits of TIFRn and of TIMSKn, and the vectors behind them.
+_TOV, _OCFA, _OCFB, _OCFC = 1, 2, 4, 8
+# Pin change interrupts of port B, the same registers on both chips: PCICR bit 0.
+_PIN_CHANGE_B = {"PCIE": 0, "PCICR": 0x68, "PCIFR": 0x3B, "PCMSK": 0x6B, "mask": 0xFF, "offset": 0}
+
+
+def describe(mcu: Mcu) -> dict[str, Any]:
+    """
+    Return ports, timers and USART0 of *mcu* as the driver hands them to avr8js.
+
+    Timer 2, the ADC, SPI, TWI and the watchdog are left out: a program that waits for them hangs.
+    """
+    return {
+        "flash_bytes": mcu.flash_bytes,
+        "ram_end": mcu.ram_start + mcu.ram_bytes - 1,
+        "response_cycles": mcu.response_cycles,
+        "ports": list(_ports(mcu)),
+        "timers": [_timer0(mcu), *(_timer16(timer, mcu) for timer in mcu.timers16)],
+        "usart": {
+            **_USART0,
+            "rxCompleteInterrupt": _address(_usart_vector(mcu, "RX")),
+            "dataRegisterEmptyInterrupt": _address(_usart_vector(mcu, "UDRE")),
+            "txCompleteInterrupt": _address(_usart_vector(mcu, "TX")),
+        },
+    }
+
+
+def _ports(mcu: Mcu) -> Iterator[dict[str, Any]]:
+    for port in mcu.ports:
+        config: dict[str, Any] = {
+            "PIN": port.pin.address,
+            "DDR": port.ddr.address,
+            "PORT": port.port.address,
+            "externalInterrupts": [],
+        }
+        if port.letter == "B":
+            vector = mcu.vector("PCINT0_vect")
+            config["pinChange"] = {**_PIN_CHANGE_B, "pinChangeInterrupt": _address(vector)}
+        yield config
+
+
+def _timer0(mcu: Mcu) -> dict[str, Any]:
+    vectors = [mcu.vector(f"TIMER0_{name}_vect") for name in ("OVF", "COMPA", "COMPB")]
+    return {
+        **_TIMER0,
+        **_common(8, _TIMER0_TIMSK, dict(zip((_TOV, _OCFA, _OCFB), vectors, strict=True))),
+        "OCRC": 0,
+        "ICR": 0,
+        "TCCRC": 0,
+        "captureInterrupt": 0,
+    }
+
+
+def _timer16(timer: Timer16, mcu: Mcu) -> dict[str, Any]:
+    vectors = {_TOV: timer.ovf, _OCFA: timer.compa, _OCFB: timer.compb}
+    if timer.compc:
+        vectors[_OCFC] = timer.compc
+    outputs: dict[str, int] = {}
+    for channel, bit in timer.outputs:
+        outputs[f"compPort{channel}"] = mcu.port(bit.port).port.address
+        outputs[f"compPin{channel}"] = bit.bit
+    return {
+        **_common(16, timer.timsk.address, vectors),
+        "TIFR": timer.tifr.address,
+        "TCCRA": timer.tccra.address,
+        "TCCRB": timer.tccrb.address,
+        "TCCRC": timer.tccrc.address,
+        "TCNT": timer.tcnt.address,
+        "ICR": timer.icr.address,
+        "OCRA": timer.ocra.address,
+        "OCRB": timer.ocrb.address,
+        "OCRC": timer.ocrc.address if timer.ocrc else 0,
+        "captureInterrupt": _address(timer.capt),
+        **outputs,
+    }
+
+
+def _common(bits: int, timsk: int, vectors: dict[int, Vector]) -> dict[str, Any]:
+    has_c = _OCFC in vectors
+    bits_used = (_TOV, _OCFA, _OCFB, _OCFC if has_c else 0)
+    return {
+        "bits": bits,
+        "TIMSK": timsk,
+        "dividers": _DIVIDERS,
+        "externalClockPort": 0,
+        "externalClockPin": 0,
+        **{f"compPort{channel}": 0 for channel in "ABC"},
+        **{f"compPin{channel}": 0 for channel in "ABC"},
+        "ovfInterrupt": _address(vectors[_TOV]),
+        "compAInterrupt": _address(vectors[_OCFA]),
+        "compBInterrupt": _address(vectors[_OCFB]),
+        "compCInterrupt": _address(vectors[_OCFC]) if has_c else 0,
+        **dict(zip(("TOV", "OCFA", "OCFB", "OCFC"), bits_used, strict=True)),
+        **dict(zip(("TOIE", "OCIEA", "OCIEB", "OCIEC"), bits_used, strict=True)),
+        "enables": [[mask, vector.number] for mask, vector in vectors.items()],
+    }
+
+
+def _usart_vector(mcu: Mcu, event: str) -> Vector:
+    """
+    Return the vector of USART0, which chips with a single USART call USART.
+    """
+    names = {f"USART_{event}_vect", f"USART0_{event}_vect"}
+    return next(vector for vector in mcu.vectors if vector.name in names)
+
+
+def _address(vector: Vector) -> int:
+    """
+    Return the address of *vector* in words: each is a jump of two.
+    """
+    return vector.number * _WORDS_PER_VECTOR
