@@ -7,7 +7,7 @@ What no motor of the library can do has no name in it.
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from stepgen.plan.model import Plan
+from stepgen.plan.model import MotorPlan, Plan
 
 _CHANGING = frozenset({"update-events"})
 _ALL = frozenset({"constant", "update-events"})
@@ -100,7 +100,15 @@ def function_names(plan: Plan) -> tuple[str, ...]:
         parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
         parts += ("StepsForTurns",) if motor.steps_per_turn is not None else ()
         names += [f"{motor.name}{part}" for part in parts]
+        names += [dump_name(motor)] if motor.motion.dumps else []
     return tuple(names)
+
+
+def dump_name(motor: MotorPlan) -> str:
+    """
+    Return the function that prints the state of *motor*: system 1's ``debugDump`` for ``motor``.
+    """
+    return "debugDump" if motor.name == "motor" else f"{motor.name}DebugDump"
 
 
 def constant_names(plan: Plan) -> tuple[str, ...]:

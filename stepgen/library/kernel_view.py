@@ -48,6 +48,7 @@ class RingView:
     rows: tuple[str, ...]
     writes: tuple[str, ...]
     row_bytes: int
+    phase_bytes: int
 
 
 KernelView = ToggleView | RingView
@@ -104,6 +105,7 @@ def _ring_view(kernel: Ring) -> RingView:
         rows=tuple(_row(index, row) for index, row in enumerate(kernel.rows)),
         writes=tuple(_write(index, write) for index, write in enumerate(kernel.writes, start=1)),
         row_bytes=kernel.row_bytes,
+        phase_bytes=2 * kernel.row_bytes,
     )
 
 

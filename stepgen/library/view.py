@@ -50,6 +50,7 @@ class LibraryView:
     constants: tuple[Named, ...]
     motion_names: tuple[str, ...]
     think_bit: int
+    dumps: bool
     timing_name: str
     needs_comment: tuple[str, ...]
     motors: tuple[MotorView, ...]
@@ -91,6 +92,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         constants=_constants(plan),
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
         think_bit=THINK_BIT,
+        dumps=any(motor.motion.dumps for motor in plan.motors),
         timing_name=module_name(plan.motors[0].timing.kind),
         needs_comment=needs_comment(plan),
         motors=motors,

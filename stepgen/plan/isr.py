@@ -30,6 +30,7 @@ class Motion:
         thinking_cycles: The same when it made the step itself.
         limit_cycles: How much later still with a limit in milliseconds.
         masked_cycles: Longest stretch of a call of the library with interrupts off.
+        dumps: Whether the library can print the state of the motion.
     """
 
     kind: str
@@ -39,6 +40,7 @@ class Motion:
     thinking_cycles: int
     limit_cycles: int
     masked_cycles: int
+    dumps: bool = False
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,9 @@ from stepgen.spec.turns import Steps
 _LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
 # What the helpers of a library begin with: millisCount(), checkSpeed(), enablesNeeded.
-_HELPER_PREFIXES = frozenset({"millis", "check", "choose", "enables", "motorTimer", "timer0"})
+_HELPER_PREFIXES = frozenset(
+    {"millis", "check", "choose", "print", "debug", "enables", "motorTimer", "timer0"}
+)
 # Headers of the Arduino core and of libraries that come with it, and names that are no folder on
 # Windows; in lower case, since file names there and on macOS do not tell it apart.
 _DEVICES = {f"{device}{digit}" for device in ("com", "lpt") for digit in range(1, 10)}

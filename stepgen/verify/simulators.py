@@ -149,7 +149,14 @@ SIMAVR = Simulator(
     corrected=frozenset(
         {"double-buffer", "slow-step", "prescaler-phase", "count-kept", "count-zero-loads-nothing"}
         | {"late-compare-shows", "fast-pwm-icr-period", "ctc-icr-period", "ctc-wrap"}
-        | {"pin-writes", "pin-writes-1280", "pin-writes-2560", "flag-sbi", "uart-buffer"}
+        | {
+            "pin-writes",
+            "pin-writes-1280",
+            "pin-writes-2560",
+            "flag-sbi",
+            "uart-buffer",
+            "uart-status",
+        }
         | _MASKING
         | _RESPONSES
     ),

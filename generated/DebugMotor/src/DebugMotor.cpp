@@ -582,7 +582,7 @@ void debugDump(Print &out) {
     left = motorLeft();
     phase = motorPosition() & 3;
   }
-  if (!(now.mode & (kRunning | kEnded))) {  // stopped: nothing of a motion is left
+  if (!(now.mode & kRunning)) {  // nothing of the motion is left
     now.control = 0;
     now.top = now.modification = 0;
     now.interval = now.updates = 0;

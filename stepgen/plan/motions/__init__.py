@@ -13,5 +13,5 @@ def plan_motion(spec: KindModel) -> Motion:
     Return what the motion of *spec* asks of the step interrupt.
     """
     module = import_module(f"{__name__}.{spec.kind.replace('-', '_')}")
-    motion: Motion = module.MOTION
+    motion: Motion = module.plan(spec)
     return motion

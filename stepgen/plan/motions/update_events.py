@@ -3,13 +3,20 @@ Update events: each step compares the clock with the next moment at which someth
 """
 
 from stepgen.plan.isr import Motion
+from stepgen.spec.motions.update_events import UpdateEvents
 
-MOTION = Motion(
-    kind="update-events",
-    watches_clock=True,
-    handler_cycles=540,
-    to_clock_cycles=61,
-    thinking_cycles=69,
-    limit_cycles=40,
-    masked_cycles=500,
-)
+
+def plan(spec: UpdateEvents) -> Motion:
+    """
+    Return what the motion asks of the step interrupt.
+    """
+    return Motion(
+        kind=spec.kind,
+        watches_clock=True,
+        handler_cycles=540,
+        to_clock_cycles=61,
+        thinking_cycles=69,
+        limit_cycles=40,
+        masked_cycles=500,
+        dumps=spec.debug,
+    )

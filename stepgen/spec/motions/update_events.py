@@ -10,9 +10,12 @@ from stepgen.spec.base import KindModel
 class UpdateEvents(KindModel):
     """
     Motion ``update-events``: what ``constant`` does, and speeds that change while running.
+
+    With *debug* the library has a function that prints the state of the motion.
     """
 
     kind: Literal["update-events"] = "update-events"
+    debug: bool = False
 
 
 SPEC = UpdateEvents

@@ -218,6 +218,18 @@ def uart_buffer(lab: Lab) -> Iterator[str]:
             yield f"{times} cycles between bytes, on the chip 640, give or take an instruction"
 
 
+@point("uart-status", "UCSR0A: the CPU writes U2X, a one clears TXC, UDRE is the chip's", "19.10.2")
+def uart_status(lab: Lab) -> Iterator[str]:
+    """
+    UDRE and U2X; TXC too when the byte has gone out, and after a zero; not after a one.
+    """
+    with lab.running("status") as machine:
+        machine.run_until_mark(1, limit_cycles=10_000)
+        seen = ram(machine, "seen", 4)
+        if seen != [0x22, 0x62, 0x62, 0x22]:
+            yield f"UCSR0A is {bytes(seen).hex()}, on the chip 22626222"
+
+
 @point("pin-change", "A change of an input raises its pin change interrupt", "13.2")
 def pin_change(lab: Lab) -> Iterator[str]:
     """

@@ -68,6 +68,7 @@ static void enter(machine *m, avr_int_vector_t *v, unsigned extra_cycles)
     table->running[table->running_ptr++] = v;
     avr_raise_irq(v->irq + AVR_INT_IRQ_RUNNING, 1);
     avr_clear_interrupt(avr, v);
+    serial_settle(m);
     avr->cycle += 2u + avr->address_size + extra_cycles;
     avr_cycle_timer_process(avr);
 }

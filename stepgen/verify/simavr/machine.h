@@ -26,6 +26,8 @@ typedef enum {
     ROLE_MARK,
     ROLE_PRESCALER,
     ROLE_DATA,   /* UDR0 */
+    ROLE_STATUS, /* UCSR0A */
+    ROLE_CONTROL, /* UCSR0B */
 } role;
 
 typedef struct {
@@ -99,5 +101,7 @@ uint64_t registers_read_edge(const avr_t *avr);
 /* serial.c */
 void serial_install(machine *m);
 void serial_transmit(machine *m, uint8_t value, uint64_t edge);
+void serial_status(machine *m, uint8_t value);
+void serial_settle(machine *m);
 
 #endif

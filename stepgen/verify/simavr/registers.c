@@ -135,6 +135,13 @@ static void act(slot *s, uint16_t address, uint8_t value)
     case ROLE_DATA:
         serial_transmit(m, value, registers_write_edge(m->avr));
         break;
+    case ROLE_CONTROL:
+        pass_on(s, address, value);
+        serial_settle(m);
+        break;
+    case ROLE_STATUS:
+        serial_status(m, value);
+        break;
     default:
         pass_on(s, address, value);
     }
@@ -203,6 +210,8 @@ void registers_install(machine *m)
     for (unsigned i = 0; i < sizeof FLAGS / sizeof FLAGS[0]; i++)
         take(m, FLAGS[i], ROLE_FLAGS);
     take(m, ADDRESS_UDR0, ROLE_DATA);
+    take(m, ADDRESS_UCSR0A, ROLE_STATUS);
+    take(m, ADDRESS_UCSR0B, ROLE_CONTROL);
     take(m, ADDRESS_SPL, ROLE_SPL);
     take(m, ADDRESS_SPH, ROLE_SPH);
     take(m, ADDRESS_EEDR, ROLE_MARK);

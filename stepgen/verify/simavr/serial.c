@@ -52,6 +52,27 @@ void serial_transmit(machine *m, uint8_t value, uint64_t edge)
     avr_cycle_timer_register(avr, m->shifting_until - avr->cycle, on_shifted, m);
 }
 
+/* UDRE says that the buffer is free, whatever the CPU does. simavr sets it with UDRIE, and
+ * clears it where the interrupt is entered. */
+void serial_settle(machine *m)
+{
+    if (!m->uart)
+        return;
+    m->uart->udrc.pending = 0;
+    avr_regbit_setto(m->avr, m->uart->udrc.raised, !m->buffered);
+}
+
+/* Writing UCSR0A sets U2X and MPCM, and a one clears TXC. The other bits are the chip's own,
+ * where simavr takes UDRE from the CPU. */
+void serial_status(machine *m, uint8_t value)
+{
+    enum { TXC = 1 << 6, MODE = U2X | 1 };
+    uint8_t *status = &m->avr->data[ADDRESS_UCSR0A];
+    *status = (uint8_t)((*status & ~MODE) | (value & MODE));
+    if (m->uart && value & TXC)
+        avr_clear_interrupt(m->avr, &m->uart->txc);
+}
+
 /* A byte is complete. The receiver holds two and a third in its shift register; one more
  * is lost. While the receiver is off the line waits. */
 static avr_cycle_count_t on_byte_time(avr_t *avr, avr_cycle_count_t when, void *param)
