@@ -176,7 +176,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR4B = _BV(WGM43) | _BV(WGM42) | setting.select;
 }
 
-// Timer 4 overflow: one step, 102 cycles from the interrupt's response to RETI; at most 286 when it
+// Timer 4 overflow: one step, 102 cycles from the interrupt's response to RETI; at most 308 when it
 // goes on in __vector_motor_boundary. The wires change 87 cycles after the timer wraps (92 before a
 // boundary). It writes port H, J, K and L and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.
@@ -338,7 +338,8 @@ void __vector_motor_boundary() {
   const uint16_t rest = motorRest;
   uint8_t run = motorRun;
   if (rest < run) {
-    if ((mode & kEndless) || motorRestHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motorRestHigh) {
       --motorRestHigh;
     } else if (rest) {
       run = rest;

@@ -158,7 +158,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
 }
 
-// Timer 3 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 208 when it
+// Timer 3 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 236 when it
 // goes on in __vector_motor_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -264,7 +264,8 @@ void __vector_motor_boundary() {
   const uint16_t rest = motorRest;
   uint8_t run = motorRun;
   if (rest < run) {
-    if ((mode & kEndless) || motorRestHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motorRestHigh) {
       --motorRestHigh;
     } else if (rest) {
       run = rest;

@@ -157,7 +157,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR1B = _BV(WGM13) | _BV(WGM12) | setting.select;
 }
 
-// Timer 1 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 207 when it
+// Timer 1 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 235 when it
 // goes on in __vector_motor_boundary. The wires change 34 cycles after the timer wraps (39 before a
 // boundary). It writes port D and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -263,7 +263,8 @@ void __vector_motor_boundary() {
   const uint16_t rest = motorRest;
   uint8_t run = motorRun;
   if (rest < run) {
-    if ((mode & kEndless) || motorRestHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motorRestHigh) {
       --motorRestHigh;
     } else if (rest) {
       run = rest;

@@ -165,7 +165,7 @@ INLINE void panRunTimer(Setting setting) {
   TCCR4B = _BV(WGM43) | _BV(WGM42) | setting.select;
 }
 
-// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 210 when it
+// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 238 when it
 // goes on in __vector_pan_boundary. The wires change 37 cycles after the timer wraps (42 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -272,7 +272,8 @@ void __vector_pan_boundary() {
   const uint16_t rest = panRest;
   uint8_t run = panRun;
   if (rest < run) {
-    if ((mode & kEndless) || panRestHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || panRestHigh) {
       --panRestHigh;
     } else if (rest) {
       run = rest;
@@ -495,7 +496,7 @@ INLINE void tiltRunTimer(Setting setting) {
   TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
 }
 
-// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 212 when it
+// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 240 when it
 // goes on in __vector_tilt_boundary. The wires change 39 cycles after the timer wraps (44 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -601,7 +602,8 @@ void __vector_tilt_boundary() {
   const uint16_t rest = tiltRest;
   uint8_t run = tiltRun;
   if (rest < run) {
-    if ((mode & kEndless) || tiltRestHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || tiltRestHigh) {
       --tiltRestHigh;
     } else if (rest) {
       run = rest;

@@ -146,7 +146,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
 }
 
-// Timer 3 overflow: one step, 30 cycles from the interrupt's response to RETI; at most 176 when it
+// Timer 3 overflow: one step, 30 cycles from the interrupt's response to RETI; at most 208 when it
 // goes on in __vector_motor_boundary. The wires change 18 cycles after the timer wraps (23 before a
 // boundary). It writes port G and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -232,7 +232,8 @@ void __vector_motor_boundary() {
   const uint16_t rest = motorRest;
   uint8_t run = motorRun;
   if (rest < run) {
-    if ((mode & kEndless) || motorRestHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motorRestHigh) {
       --motorRestHigh;
     } else if (rest) {
       run = rest;

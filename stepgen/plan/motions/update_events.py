@@ -7,8 +7,8 @@ from stepgen.plan.isr import Motion
 MOTION = Motion(
     kind="update-events",
     watches_clock=True,
-    handler_cycles=385,
+    handler_cycles=510,
     to_clock_cycles=21,
     thinking_cycles=74,
-    masked_cycles=380,
+    masked_cycles=535,
 )
