@@ -49,7 +49,7 @@ class Toggle:
 
     kind = "toggle"
     state_note = "the bits that the next step toggles"
-    handler = HandlerCycles(longest=175, masked=0, to_clock=64, to_clock_thinking=84)
+    handler = HandlerCycles(longest=165, masked=0, to_clock=64, to_clock_thinking=84)
 
     @property
     def both(self) -> int:
@@ -94,7 +94,7 @@ class Ring:
         thinking = 92 + 11 * len(self.writes)
         more = len(self.writes) - 1
         return HandlerCycles(
-            longest=185 + 3 * more,
+            longest=174 + 3 * more,
             masked=9 * more,
             to_clock=69,
             to_clock_thinking=thinking,

@@ -104,7 +104,7 @@ static uint16_t motorRest;
 static uint16_t motorRestHigh;
 // The position when all of them are made.
 static uint32_t motorTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
+// A millisecond limit ends at this count of millis(), after so many more laps of 16384 ms.
 static uint16_t motorEndMillis;
 static __uint24 motorEndLaps;
 // The next step sets the timer to this, unless its select is 0.
@@ -158,7 +158,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
 }
 
-// Timer 3 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 236 when it
+// Timer 3 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 225 when it
 // goes on in __vector_motor_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -232,13 +232,15 @@ INLINE void motorReached(uint8_t mode) {
   motorStatus = (motorStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool motorMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool motorMillisOver(bool count) {
   if (static_cast<int16_t>(millisCount() - motorEndMillis) < 0) return false;
   if (motorEndLaps == 0) return true;
-  --motorEndLaps;
-  motorEndMillis += 0x8000;
+  if (count) {
+    --motorEndLaps;
+    motorEndMillis += 0x4000;
+  }
   return false;
 }
 
@@ -249,7 +251,8 @@ extern "C" void __vector_motor_boundary() __attribute__((signal, used, externall
 void __vector_motor_boundary() {
   const uint8_t mode = motorMode;
   if (mode & kThink) {
-    if ((mode & kCoast) || motorMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || motorMillisOver(!motorNext.select)) {
       GPIOR1 = 1;  // there was no step
       motorStopTimer();
       motorReached(0);
@@ -321,7 +324,12 @@ int8_t motorSetSpeed(
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
   const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
+  __uint24 laps = limit >> 14;
+  uint16_t wait = limit & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
   const uint32_t rest = steps - 1;
   // Cycles from the due step until the interrupt has set the timer anew.
@@ -338,7 +346,7 @@ int8_t motorSetSpeed(
     motorRest = rest;
     motorRestHigh = rest >> 16;
     GPIOR1 = 1;
-    motorEndMillis = millisCount() + (limit & 0x7FFF);
+    motorEndMillis = millisCount() + wait;
     motorEndLaps = laps;
     motorStatus = MOTOR_STAT_SPIN_FIXED;
     uint8_t mode = reverse | kRunning;
@@ -374,7 +382,7 @@ uint8_t motorReadStatus() {
     status = motorStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (motorMode & (kThink | kCoast)) == kThink;
-    if (limited && motorMillisOver()) {
+    if (limited && motorMillisOver(false)) {
       status |= MOTOR_STAT_REACHED;
     }
   }

@@ -112,7 +112,7 @@ static uint16_t panRest;
 static uint16_t panRestHigh;
 // The position when all of them are made.
 static uint32_t panTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
+// A millisecond limit ends at this count of millis(), after so many more laps of 16384 ms.
 static uint16_t panEndMillis;
 static __uint24 panEndLaps;
 // The next step sets the timer to this, unless its select is 0.
@@ -165,7 +165,7 @@ INLINE void panRunTimer(Setting setting) {
   TCCR4B = _BV(WGM43) | _BV(WGM42) | setting.select;
 }
 
-// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 238 when it
+// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 227 when it
 // goes on in __vector_pan_boundary. The wires change 37 cycles after the timer wraps (42 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -239,13 +239,15 @@ INLINE void panReached(uint8_t mode) {
   panStatus = (panStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool panMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool panMillisOver(bool count) {
   if (static_cast<int16_t>(millisCount() - panEndMillis) < 0) return false;
   if (panEndLaps == 0) return true;
-  --panEndLaps;
-  panEndMillis += 0x8000;
+  if (count) {
+    --panEndLaps;
+    panEndMillis += 0x4000;
+  }
   return false;
 }
 
@@ -256,7 +258,8 @@ extern "C" void __vector_pan_boundary() __attribute__((signal, used, externally_
 void __vector_pan_boundary() {
   const uint8_t mode = panMode;
   if (mode & kThink) {
-    if ((mode & kCoast) || panMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || panMillisOver(!panNext.select)) {
       GPIOR1 = 1;  // there was no step
       panStopTimer();
       panCoilsOff();
@@ -327,7 +330,12 @@ int8_t panSetSpeed(
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
   const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
+  __uint24 laps = limit >> 14;
+  uint16_t wait = limit & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
   const uint32_t rest = steps - 1;
   // Cycles from the due step until the interrupt has set the timer anew.
@@ -344,7 +352,7 @@ int8_t panSetSpeed(
     panRest = rest;
     panRestHigh = rest >> 16;
     GPIOR1 = 1;
-    panEndMillis = millisCount() + (limit & 0x7FFF);
+    panEndMillis = millisCount() + wait;
     panEndLaps = laps;
     panStatus = MOTOR_STAT_SPIN_FIXED;
     uint8_t mode = reverse | kRunning;
@@ -378,7 +386,7 @@ uint8_t panReadStatus() {
     status = panStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (panMode & (kThink | kCoast)) == kThink;
-    if (limited && panMillisOver()) {
+    if (limited && panMillisOver(false)) {
       status |= MOTOR_STAT_REACHED;
     }
   }
@@ -440,7 +448,7 @@ static uint16_t tiltRest;
 static uint16_t tiltRestHigh;
 // The position when all of them are made.
 static uint32_t tiltTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
+// A millisecond limit ends at this count of millis(), after so many more laps of 16384 ms.
 static uint16_t tiltEndMillis;
 static __uint24 tiltEndLaps;
 // The next step sets the timer to this, unless its select is 0.
@@ -496,7 +504,7 @@ INLINE void tiltRunTimer(Setting setting) {
   TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
 }
 
-// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 240 when it
+// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 229 when it
 // goes on in __vector_tilt_boundary. The wires change 39 cycles after the timer wraps (44 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -570,13 +578,15 @@ INLINE void tiltReached(uint8_t mode) {
   tiltStatus = (tiltStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool tiltMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool tiltMillisOver(bool count) {
   if (static_cast<int16_t>(millisCount() - tiltEndMillis) < 0) return false;
   if (tiltEndLaps == 0) return true;
-  --tiltEndLaps;
-  tiltEndMillis += 0x8000;
+  if (count) {
+    --tiltEndLaps;
+    tiltEndMillis += 0x4000;
+  }
   return false;
 }
 
@@ -587,7 +597,8 @@ extern "C" void __vector_tilt_boundary() __attribute__((signal, used, externally
 void __vector_tilt_boundary() {
   const uint8_t mode = tiltMode;
   if (mode & kThink) {
-    if ((mode & kCoast) || tiltMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || tiltMillisOver(!tiltNext.select)) {
       tiltCount = 1;  // there was no step
       tiltStopTimer();
       tiltReached(0);
@@ -659,7 +670,12 @@ int8_t tiltSetSpeed(
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
   const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
+  __uint24 laps = limit >> 14;
+  uint16_t wait = limit & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
   const uint32_t rest = steps - 1;
   // Cycles from the due step until the interrupt has set the timer anew.
@@ -676,7 +692,7 @@ int8_t tiltSetSpeed(
     tiltRest = rest;
     tiltRestHigh = rest >> 16;
     tiltCount = 1;
-    tiltEndMillis = millisCount() + (limit & 0x7FFF);
+    tiltEndMillis = millisCount() + wait;
     tiltEndLaps = laps;
     tiltStatus = MOTOR_STAT_SPIN_FIXED;
     uint8_t mode = reverse | kRunning;
@@ -712,7 +728,7 @@ uint8_t tiltReadStatus() {
     status = tiltStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (tiltMode & (kThink | kCoast)) == kThink;
-    if (limited && tiltMillisOver()) {
+    if (limited && tiltMillisOver(false)) {
       status |= MOTOR_STAT_REACHED;
     }
   }

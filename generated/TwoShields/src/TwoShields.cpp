@@ -104,7 +104,7 @@ static uint16_t lowerRest;
 static uint16_t lowerRestHigh;
 // The position when all of them are made.
 static uint32_t lowerTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
+// A millisecond limit ends at this count of millis(), after so many more laps of 16384 ms.
 static uint16_t lowerEndMillis;
 static __uint24 lowerEndLaps;
 // The next step sets the timer to this, unless its select is 0.
@@ -158,7 +158,7 @@ INLINE void lowerRunTimer(Setting setting) {
   TCCR1B = _BV(WGM13) | _BV(WGM12) | setting.select;
 }
 
-// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 236 when it
+// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 225 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -232,13 +232,15 @@ INLINE void lowerReached(uint8_t mode) {
   lowerStatus = (lowerStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool lowerMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool lowerMillisOver(bool count) {
   if (static_cast<int16_t>(millisCount() - lowerEndMillis) < 0) return false;
   if (lowerEndLaps == 0) return true;
-  --lowerEndLaps;
-  lowerEndMillis += 0x8000;
+  if (count) {
+    --lowerEndLaps;
+    lowerEndMillis += 0x4000;
+  }
   return false;
 }
 
@@ -249,7 +251,8 @@ extern "C" void __vector_lower_boundary() __attribute__((signal, used, externall
 void __vector_lower_boundary() {
   const uint8_t mode = lowerMode;
   if (mode & kThink) {
-    if ((mode & kCoast) || lowerMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || lowerMillisOver(!lowerNext.select)) {
       GPIOR1 = 1;  // there was no step
       lowerStopTimer();
       lowerReached(0);
@@ -319,7 +322,12 @@ int8_t lowerSetSpeed(
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
   const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
+  __uint24 laps = limit >> 14;
+  uint16_t wait = limit & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
   const uint32_t rest = steps - 1;
   // Cycles from the due step until the interrupt has set the timer anew.
@@ -336,7 +344,7 @@ int8_t lowerSetSpeed(
     lowerRest = rest;
     lowerRestHigh = rest >> 16;
     GPIOR1 = 1;
-    lowerEndMillis = millisCount() + (limit & 0x7FFF);
+    lowerEndMillis = millisCount() + wait;
     lowerEndLaps = laps;
     lowerStatus = MOTOR_STAT_SPIN_FIXED;
     uint8_t mode = reverse | kRunning;
@@ -372,7 +380,7 @@ uint8_t lowerReadStatus() {
     status = lowerStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (lowerMode & (kThink | kCoast)) == kThink;
-    if (limited && lowerMillisOver()) {
+    if (limited && lowerMillisOver(false)) {
       status |= MOTOR_STAT_REACHED;
     }
   }
@@ -444,7 +452,7 @@ static uint16_t upperRest;
 static uint16_t upperRestHigh;
 // The position when all of them are made.
 static uint32_t upperTarget;
-// A millisecond limit ends at this count of millis(), after so many more laps of 32768 ms.
+// A millisecond limit ends at this count of millis(), after so many more laps of 16384 ms.
 static uint16_t upperEndMillis;
 static __uint24 upperEndLaps;
 // The next step sets the timer to this, unless its select is 0.
@@ -499,7 +507,7 @@ INLINE void upperRunTimer(Setting setting) {
   TCCR3B = _BV(WGM33) | _BV(WGM32) | setting.select;
 }
 
-// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 242 when it
+// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 231 when it
 // goes on in __vector_upper_boundary. The wires change 41 cycles after the timer wraps (46 before a
 // boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -573,13 +581,15 @@ INLINE void upperReached(uint8_t mode) {
   upperStatus = (upperStatus & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool upperMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool upperMillisOver(bool count) {
   if (static_cast<int16_t>(millisCount() - upperEndMillis) < 0) return false;
   if (upperEndLaps == 0) return true;
-  --upperEndLaps;
-  upperEndMillis += 0x8000;
+  if (count) {
+    --upperEndLaps;
+    upperEndMillis += 0x4000;
+  }
   return false;
 }
 
@@ -590,7 +600,8 @@ extern "C" void __vector_upper_boundary() __attribute__((signal, used, externall
 void __vector_upper_boundary() {
   const uint8_t mode = upperMode;
   if (mode & kThink) {
-    if ((mode & kCoast) || upperMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || upperMillisOver(!upperNext.select)) {
       upperCount = 1;  // there was no step
       upperStopTimer();
       upperCoilsOff();
@@ -661,7 +672,12 @@ int8_t upperSetSpeed(
   }
   const uint8_t reverse = control & MOTOR_CTRL_DIRECTION ? kReverse : 0;
   const bool millisLimit = (control & MOTOR_CTRL_ENDPOINT_MILLIS) && limit != 0;
-  const __uint24 laps = limit >> 15;
+  __uint24 laps = limit >> 14;
+  uint16_t wait = limit & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t steps = control & MOTOR_CTRL_ENDPOINT_MILLIS ? 0 : limit;
   const uint32_t rest = steps - 1;
   // Cycles from the due step until the interrupt has set the timer anew.
@@ -678,7 +694,7 @@ int8_t upperSetSpeed(
     upperRest = rest;
     upperRestHigh = rest >> 16;
     upperCount = 1;
-    upperEndMillis = millisCount() + (limit & 0x7FFF);
+    upperEndMillis = millisCount() + wait;
     upperEndLaps = laps;
     upperStatus = MOTOR_STAT_SPIN_FIXED;
     uint8_t mode = reverse | kRunning;
@@ -712,7 +728,7 @@ uint8_t upperReadStatus() {
     status = upperStatus;
     // A millisecond limit ends on time, though the next step may be far away.
     const bool limited = (upperMode & (kThink | kCoast)) == kThink;
-    if (limited && upperMillisOver()) {
+    if (limited && upperMillisOver(false)) {
       status |= MOTOR_STAT_REACHED;
     }
   }

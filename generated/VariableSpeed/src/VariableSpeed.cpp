@@ -172,7 +172,7 @@ INLINE void motorRunTimer(Setting setting) {
   TCCR1B = _BV(WGM13) | _BV(WGM12) | setting.select;
 }
 
-// Timer 1 overflow: one step, 32 cycles from the interrupt's response to RETI; at most 740 when it
+// Timer 1 overflow: one step, 32 cycles from the interrupt's response to RETI; at most 750 when it
 // goes on in __vector_motor_boundary. The wires change 21 cycles after the timer wraps (45 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

@@ -10,5 +10,5 @@ MOTION = Motion(
     handler_cycles=0,
     to_clock_cycles=0,
     thinking_cycles=0,
-    masked_cycles=245,
+    masked_cycles=235,
 )

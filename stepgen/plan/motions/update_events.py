@@ -7,7 +7,7 @@ from stepgen.plan.isr import Motion
 MOTION = Motion(
     kind="update-events",
     watches_clock=True,
-    handler_cycles=510,
+    handler_cycles=530,
     to_clock_cycles=21,
     thinking_cycles=74,
     masked_cycles=535,

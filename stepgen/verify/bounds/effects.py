@@ -99,6 +99,11 @@ def _pop(machine: Machine, line: Line) -> None:
     machine.put(line, unknown_byte() if isinstance(top, int) else top)
 
 
+def _multiply(machine: Machine, _: Line) -> None:
+    machine.registers[0], machine.registers[1] = unknown_byte(), unknown_byte()
+    machine.forget_flags()
+
+
 def _make_room(machine: Machine, _: Line) -> None:
     """
     ``rcall .+0`` pushes the address of what follows, for its two or three bytes of room.
@@ -155,6 +160,7 @@ _STEPS: dict[str, Callable[[Machine, Line], None]] = {
     "ldd": _load,
     "st": _store,
     "std": _store,
+    **dict.fromkeys(("mul", "muls", "mulsu", "fmul", "fmuls", "fmulsu"), _multiply),
     "lpm": _load_program,
     "elpm": _load_program,
     "push": lambda m, i: m.stack.append(m.get(i, 0)),
