@@ -237,6 +237,43 @@ isr:  ldi  r20, 6     ; 1
     assert bound.cycles == ENTRY + 1 + 29 + 4
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        "sbrc r24, 0\n rjmp around\n dec r20\n brne around",  # back without DEC
+        "sbrc r24, 0\n dec r20\n brne around",  # DEC is skipped
+        "sbrc r24, 0\n rjmp 1f\n dec r20\n 1: brne around",  # or jumped over
+        "lds r20, 0x100\n dec r20\n brne around",  # the counter is set anew
+        "movw r20, r24\n dec r20\n brne around",  # and as one of a pair
+        "dec r21\n brne around",  # another register is counted
+    ],
+)
+def test_a_loop_that_only_looks_counted_is_refused(worst_case: Assemble, body: str) -> None:
+    """
+    Whatever can go round without counting needs a stated bound.
+    """
+    with pytest.raises(StepgenError, match="nobody has stated a bound"):
+        worst_case(f"isr: ldi r20, 6\naround: lsr r24\n {body}\n reti").interrupt(VECTOR)
+
+
+def test_loops_within_a_loop_multiply(worst_case: Assemble) -> None:
+    """
+    Each round of the outer loop takes all rounds of the inner one.
+    """
+    bound = worst_case("""
+isr:  ldi  r20, 3     ; 1
+1:    ldi  r21, 4     ; 1
+2:    lsr  r24        ; 1
+      dec  r21        ; 1
+      brne 2b         ; 2, and 1 the last time: 4 * 4 - 1 = 15
+      dec  r20        ; 1
+      brne 1b         ; 2, and 1 the last time: 3 * (1 + 15 + 1 + 2) - 1 = 56
+      reti            ; 4
+""").interrupt(VECTOR)
+
+    assert bound.cycles == ENTRY + 1 + 56 + 4
+
+
 LOOP = """
 isr:  lds  r20, 0x100 ; 2
 around: lsr  r24      ; 1

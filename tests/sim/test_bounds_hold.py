@@ -8,22 +8,29 @@ the instructions whose effects the search follows, and branch on what earlier on
 import random
 import subprocess
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 from stepgen.devices.mcus.atmega328p import MCU
+from stepgen.verify.bounds.cycles import Core
+from stepgen.verify.bounds.disassembly import disassemble
+from stepgen.verify.bounds.graph import Graph
+from stepgen.verify.bounds.machine import Memory
+from stepgen.verify.bounds.search import Search, Way
 from stepgen.verify.bounds.worst_case import WorstCase
 from stepgen.verify.compilers import default_compiler
 from stepgen.verify.simavr import Kind, Machine
 
+VECTOR = "TIMER1_OVF_vect"
 SPACING_CYCLES = 2000
 RUNS = 400
-INSTRUCTIONS = 50
+INSTRUCTIONS = 24
 PROGRAM = """\
 #include <avr/interrupt.h>
 #include <avr/io.h>
-unsigned char cell[8];
+unsigned char cell[8] __attribute__((aligned(16)));
 int main() {{
   OCR1A = {spacing} - 1;
   TCCR1A = 3;  // fast PWM, TOP is OCR1A
@@ -34,29 +41,34 @@ int main() {{
     x ^= x << 13;
     x ^= x >> 17;
     x ^= x << 5;
-    cell[x & 7] = x >> 8 & ((x & 0x40000000) ? 0x81 : 0xFF);
+    cell[x & 1 ? 0 : x >> 1 & 3] = x >> 8 & ((x & 0x40000000) ? 0x81 : 0xFF);
   }}
 }}
 ISR(TIMER1_OVF_vect, ISR_NAKED) {{
   asm volatile({code});
 }}
 """
-HIGH = range(16, 26)
+HIGH = range(22, 26)  # few, so that what one instruction leaves the next one finds
 UNARY = ("com", "neg", "inc", "dec", "lsr", "asr", "ror", "lsl", "rol", "swap", "tst")
 BINARY = ("add", "adc", "sub", "sbc", "and", "or", "eor", "mov", "cp", "cpc")
 IMMEDIATE = ("ldi", "subi", "sbci", "andi", "ori", "cpi")
 BRANCHES = ("breq", "brne", "brcs", "brcc", "brmi", "brpl", "brlt", "brge", "brts", "brtc")
 CONSTANTS = (0, 0, 1, 2, 0x40, 0x80, 0x81, 0xFF)
-SAVED = [*(f"r{number}" for number in HIGH), "r26", "r27", "r30", "r31"]
+SAVED = ["r16", "r17", *(f"r{number}" for number in HIGH), "r26", "r27", "r30", "r31"]
 
 
 def random_code(dice: random.Random) -> Iterator[str]:
     """
     Yield the lines of an interrupt that only goes forward.
+
+    Where it falls through a branch, or does not skip, it writes a number of its own to port B.
     """
     labels: dict[int, list[int]] = {}
     yield from (f"push {register}" for register in SAVED)
     yield from ("in r16, 0x3f", "push r16")
+    yield from ("ldi r17, 0", "out 0x05, r17")  # a mark shows where it changes the port
+    # Z points at the cells, and X somewhere among them: see below.
+    yield from ("ldi r30, lo8(cell)", "ldi r31, hi8(cell)", "mov r26, r30", "mov r27, r31")
     for place in range(INSTRUCTIONS):
         yield from (f"{label}:" for label in labels.pop(place, ()))
         kind = dice.random()
@@ -64,18 +76,20 @@ def random_code(dice: random.Random) -> Iterator[str]:
             label = 100 + place
             labels.setdefault(place + dice.randint(1, 8), []).append(label)
             yield f"{dice.choice(BRANCHES)} {label}f"
+            yield from (f"ldi r17, {place + 1}", "out 0x05, r17")
         elif kind < 0.35:
             register, other = dice.choice(HIGH), dice.choice(HIGH)
+            yield f"ldi r17, {place + 1}"
             yield dice.choice(
                 (
-                    f"sbrc r{register}, {dice.randint(0, 7)}",
+                    f"sbrc r{register}, {dice.choice((0, 7))}",
                     f"cpse r{register}, r{other}",
-                    f"sbrs r{register}, {dice.randint(0, 7)}",
+                    f"sbrs r{register}, {dice.choice((0, 7))}",
                     "sbis 0x1e, 3",
                     "sbic 0x1e, 0",
                 )
             )
-            yield random_instruction(dice)
+            yield "out 0x05, r17"
         else:
             yield random_instruction(dice)
     for left in labels.values():
@@ -87,10 +101,10 @@ def random_code(dice: random.Random) -> Iterator[str]:
 
 def random_instruction(dice: random.Random) -> str:
     """
-    Return an instruction that changes registers, memory or flags.
+    Return an instruction that changes registers, memory or flags, or a few that belong together.
     """
     register, other = dice.choice(HIGH), dice.choice(HIGH)
-    bit, cell = dice.randint(0, 7), dice.randint(0, 7)
+    bit, cell = dice.choice((0, 7)), dice.randint(0, 2)
     return dice.choice(
         (
             f"{dice.choice(UNARY)} r{register}",
@@ -108,14 +122,33 @@ def random_instruction(dice: random.Random) -> str:
             f"in r{register}, 0x1e",
             f"out 0x1e, r{register}",
             f"sbi 0x1e, {bit}",
+            f"ldd r{register}, Z+{cell}",
+            f"std Z+{cell}, r{register}",
+            f"lds r26, cell + {cell}\nandi r26, 1\nsubi r26, lo8(-(cell))\nst X, r{register}",
+            f"ld r{register}, X",
+            f"push r{register}\ninc r{register}\npop r{other}",
             f"{dice.choice(('sec', 'clc', 'set', 'clt'))}",
         )
     )
 
 
-def measure(code: str, seed: int, folder: Path) -> tuple[int, int, WorstCase]:
+Marks = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Measured:
     """
-    Return the most cycles and bytes of stack that the interrupt took, and its bounds.
+    What the runs of the interrupt took at most, and the marks that each kind of run left.
+    """
+
+    cycles: int
+    stack_bytes: int
+    marks: set[Marks]
+
+
+def build(code: str, seed: int, folder: Path) -> Path:
+    """
+    Return the program with the interrupt *code*.
     """
     text = "\n".join(f'    "{line}\\n"' for line in code.splitlines())
     (folder / "program.c").write_text(
@@ -124,26 +157,61 @@ def measure(code: str, seed: int, folder: Path) -> tuple[int, int, WorstCase]:
     elf = folder / "program.elf"
     command = ["avr-gcc", "-mmcu=atmega328p", "-Os", str(folder / "program.c"), "-o", str(elf)]
     subprocess.run(command, check=True)
-    with Machine(elf, mcu="atmega328p", f_cpu_hz=16_000_000) as machine:
+    return elf
+
+
+def measure(elf: Path) -> Measured:
+    """
+    Run *elf* and return what its interrupt did.
+    """
+    with Machine(elf, mcu=MCU.name, f_cpu_hz=16_000_000) as machine:
         machine.run_until(RUNS * SPACING_CYCLES)
-        exits = machine.events()
-        exits = exits[exits["kind"] == Kind.ISR_EXIT]
+        events = machine.events()
+        exits = events[events["kind"] == Kind.ISR_EXIT]
+        ports = events[events["kind"] == Kind.PORT]
         assert len(exits) > RUNS // 2
-        cycles = int((exits["cycle"] - exits["since"]).max())
-        stack = int(exits["value"].max())
-    return cycles, stack, WorstCase(elf, MCU, default_compiler())
+        runs = ((ports["cycle"] > one["since"]) & (ports["cycle"] < one["cycle"]) for one in exits)
+        return Measured(
+            int((exits["cycle"] - exits["since"]).max()),
+            int(exits["value"].max()),
+            {tuple(filter(None, ports["value"][inside].tolist())) for inside in runs},
+        )
+
+
+def possible_marks(elf: Path) -> set[Marks]:
+    """
+    Return the marks of every way that the search does not rule out.
+    """
+    program = disassemble(elf, default_compiler())
+    graph = Graph(program, Core.of(MCU), {})
+    start = 4 * MCU.vector(VECTOR).number
+    return {marks(way) for way in Search(graph, Memory.of(MCU)).ways(start, graph.reach(start))}
+
+
+def marks(way: Way) -> Marks:
+    """
+    Return what is written to port B on *way*.
+    """
+    written, mark = [], 0
+    for line in way.lines:
+        if line.name == "ldi" and line.operands[0] == "r17":
+            mark = int(line.operands[1], 0)
+        elif line.name == "out" and line.operands == ("0x05", "r17"):
+            written.append(mark)
+    return tuple(filter(None, written))
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_no_run_exceeds_the_bound(seed: int, tmp_path: Path) -> None:
+def test_no_run_goes_a_way_that_was_ruled_out(seed: int, tmp_path: Path) -> None:
     """
-    Whatever the memory holds, the interrupt keeps to its bound in cycles and stack.
+    Whatever the memory holds, the interrupt goes a way that the search knows, within its bound.
     """
-    dice = random.Random(seed)  # noqa: S311 - no secret
-    code = "\n".join(random_code(dice))
+    dice = random.Random(seed)  # noqa: S311 - repeatable, not secret
+    elf = build("\n".join(random_code(dice)), seed + 1, tmp_path)
 
-    cycles, stack, program = measure(code, seed + 1, tmp_path)
+    measured = measure(elf)
 
-    bound = program.interrupt("TIMER1_OVF_vect")
-    assert cycles <= bound.cycles
-    assert stack <= bound.stack_bytes
+    bound = WorstCase(elf, MCU, default_compiler()).interrupt(VECTOR)
+    assert measured.cycles <= bound.cycles
+    assert measured.stack_bytes <= bound.stack_bytes
+    assert measured.marks <= possible_marks(elf)

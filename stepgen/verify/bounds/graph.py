@@ -128,20 +128,12 @@ class Graph:
                 continue
             loop = self._loop(set(part), edges, start)
             loops[loop.head] = loop
-            inside = {a: _within(edges[a], loop.body - {loop.head}) for a in part}
-            back = {
-                a: max(c for g, c in edges[a] if g == loop.head)
-                for a in part
-                if loop.head in _targets(edges, a)
-            }
-            leave = {
-                a: _best(
-                    [(g, c) for g, c in edges[a] if g not in loop.body],
-                    longest,
-                    ends.get(a, _NEVER),
-                )
-                for a in part
-            }
+            inside, back, leave = {}, {}, {}
+            for a in part:
+                inside[a] = tuple((g, c) for g, c in edges[a] if g in loop.body - {loop.head})
+                back[a] = max((c for g, c in edges[a] if g == loop.head), default=_NEVER)
+                outward = tuple((g, c) for g, c in edges[a] if g not in loop.body)
+                leave[a] = _best(outward, longest, ends.get(a, _NEVER))
             lap = self._longest(inside, back, loops, loop.head)
             out = self._longest(inside, leave, loops, loop.head)
             head = (loop.rounds - 1) * max(lap[loop.head], 0) + out[loop.head]
@@ -173,11 +165,5 @@ def _targets(edges: Edges, address: int) -> Iterator[int]:
     return (goes for goes, _ in edges[address])
 
 
-def _within(out: tuple[tuple[int, int], ...], nodes: frozenset[int]) -> tuple[tuple[int, int], ...]:
-    return tuple((goes, cycles) for goes, cycles in out if goes in nodes)
-
-
-def _best(
-    out: list[tuple[int, int]] | tuple[tuple[int, int], ...], longest: Mapping[int, int], own: int
-) -> int:
+def _best(out: tuple[tuple[int, int], ...], longest: Mapping[int, int], own: int) -> int:
     return max([own, *(cycles + longest[goes] for goes, cycles in out)])

@@ -65,8 +65,8 @@ def counted_rounds(head: Line, body: Sequence[Line], entries: Sequence[Line]) ->
     """
     Return how often a counted loop goes round, or None if it is not of this kind.
 
-    avr-gcc shifts by a constant with LDI rN, k before the loop and DEC rN, BRNE at its end;
-    nothing else in the loop touches rN.
+    avr-gcc shifts by a constant with LDI rN, k before the loop and DEC rN, BRNE at its end.
+    Nothing else in the loop touches rN, goes back to its head, or gets round DEC.
     """
     if len(entries) != 1 or entries[0].name != "ldi" or len(body) < 2:  # noqa: PLR2004 - DEC, BRNE
         return None
@@ -76,5 +76,11 @@ def counted_rounds(head: Line, body: Sequence[Line], entries: Sequence[Line]) ->
         (step.name, step.operands) == ("dec", (counter,))
         and (branch.name, branch.target) == ("brne", head.address)
         and not any(counter in line.operands or line.name in _WRITES_PAIRS for line in rest)
+        and not any(goes in {head.address, branch.address} for goes in _jumps(rest))
+        and not any(line.is_skip and line.following == step.address for line in rest)
     )
     return rounds if is_counted and rounds else None
+
+
+def _jumps(lines: Sequence[Line]) -> Iterator[int]:
+    return (line.target for line in lines if line.is_branch or line.is_jump)

@@ -125,9 +125,8 @@ class Search:
         Raises:
             StepgenError: A function takes its return address from elsewhere.
         """
-        entry = self.graph.program.entry_of(start)
         order = count()
-        heap = [(0, 0, _State(start, (Frame(reach, entry),), Machine(self.memory)))]
+        heap = [(0, 0, self._begin(start, reach))]
         for _ in range(self.most_forks):
             _, _, best = heapq.heappop(heap)
             if not best.frames:
@@ -137,6 +136,22 @@ class Search:
                 heapq.heappush(heap, (-longest, next(order), state))
         bound, _, best = heap[0]
         return Way(-bound, _unroll(best.trail), is_exact=False)
+
+    def ways(self, start: int, reach: Reach) -> Iterator[Way]:
+        """
+        Yield every way from *start* that no test contradicts; there may be very many.
+        """
+        waiting = [self._begin(start, reach)]
+        while waiting:
+            state = waiting.pop()
+            if state.frames:
+                waiting.extend(self._advance(state))
+            else:
+                yield Way(state.cycles, _unroll(state.trail), is_exact=True)
+
+    def _begin(self, start: int, reach: Reach) -> _State:
+        entry = self.graph.program.entry_of(start)
+        return _State(start, (Frame(reach, entry),), Machine(self.memory))
 
     def _advance(self, state: _State) -> Iterator[_State]:
         """

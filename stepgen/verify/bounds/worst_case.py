@@ -18,7 +18,7 @@ from stepgen.verify.bounds.search import Search
 from stepgen.verify.bounds.stack import stack_bytes
 from stepgen.verify.compilers import Compiler
 
-_VECTOR_BYTES = 4  # a JMP, on every chip with more than 8 KiB of flash
+_NEAR_FLASH_BYTES = 8 * 1024  # up to it a vector is an RJMP, beyond it a JMP
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,8 @@ class WorstCase:
         Raises:
             StepgenError: It has no bound; says which instruction is to blame.
         """
-        start = self._mcu.vector(vector).number * _VECTOR_BYTES
+        vector_bytes = 4 if self._mcu.flash_bytes > _NEAR_FLASH_BYTES else 2
+        start = self._mcu.vector(vector).number * vector_bytes
         way = Search(self._graph, self._memory).longest(start, self._graph.reach(start))
         response = self._core.response_cycles
         path = (f"response: {response} cycles", *self._describe(way.lines))
