@@ -3,6 +3,7 @@
 """
 
 import json
+from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from stepgen.verify.doctor import Diagnosis
 
 EXAMPLE = "Example: stepgen doctor"
+_DEMAND_WIDTH = 46  # leaves room for three simulators in 80 columns
 
 
 def doctor(
@@ -44,7 +46,8 @@ def _show(found: "Diagnosis") -> None:
     compilers = [(one.name, one.version) for one in found.compilers]
     simulators = [(name, version or "not here") for name, version in found.simulators.items()]
     rows = [
-        (point.demand, *(row[name].word for name in here)) for point, row in found.verdicts.items()
+        (fill(point.demand, _DEMAND_WIDTH), *(row[name].word for name in here))
+        for point, row in found.verdicts.items()
     ]
     print_tables(
         [

@@ -26,6 +26,9 @@ def verify(
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one object (several specs: an array).")
     ] = False,
+    paths: Annotated[
+        bool, typer.Option("--paths", help="Show the longest way through each step interrupt.")
+    ] = False,
     compiler: Annotated[
         str | None,
         typer.Option("--compiler", metavar="NAME", help="gcc-5.4 or gcc-7.3; default: on PATH."),
@@ -41,7 +44,8 @@ def verify(
     Prove the library of each spec: every pin edge against the reference model, to the cycle.
 
     avr8js and yasimavr run the shorter scenarios only. A simulator that is unlike the chip in
-    something that the spec depends on is refused; with `all` it is left out.
+    something that the spec depends on is refused; with `all` it is left out. The longest that an
+    interrupt can take is worked out from the program itself.
 
     Exit code 1 if any check fails.
     """
@@ -53,7 +57,7 @@ def verify(
                 report = api.verify(path, compiler=compiler, simulator=name, track=track)
             reports.append(report)
             if not as_json:
-                _say_report(report)
+                _say_report(report, paths=paths)
     if as_json:
         shown = [report.as_json() for report in reports]
         say(json.dumps(shown[0] if len(shown) == 1 else shown, indent=2, ensure_ascii=False))
@@ -76,7 +80,7 @@ def _simulators(path: Path, wanted: str, compiler: str | None) -> list[str]:
     return usable
 
 
-def _say_report(report: "SpecReport") -> None:
+def _say_report(report: "SpecReport", *, paths: bool) -> None:
     tools = f"{report.compiler}, {report.simulator}"
     say(f"{report.spec} ({tools}): {'passed' if report.passed else 'FAILED'}")
     for check in report.checks:
@@ -89,7 +93,13 @@ def _say_report(report: "SpecReport") -> None:
             f"{motor.measured_max} of at most {motor.bound}, "
             f"up to {motor.max_steps_per_second:.0f} steps/s"
         )
-    stack = f", {report.stack_bytes} of stack" if report.stack_bytes else ""
+        for part in motor.longest_path if paths else ():
+            say(f"    {part}")
+    stack = (
+        f", {report.stack_bytes} of at most {report.stack_bound_bytes} of stack"
+        if report.stack_bytes
+        else ""
+    )
     say(
         f"  {report.flash_bytes} bytes of flash and {report.ram_bytes} of RAM over an empty "
         f"sketch{stack}"

@@ -25,7 +25,7 @@ class Motion:
     Args:
         kind: The spec's name of the motion.
         watches_clock: Whether each step looks if the clock has come to a moment to wake up at.
-        handler_cycles: How much longer the handler of the rare ways can take.
+        handler_cycles: How much longer the handler of the rare ways can take, at most.
         to_clock_cycles: How much later it starts the clock of a timer that it sets anew.
         thinking_cycles: The same when it made the step itself.
         limit_cycles: How much later still with a limit in milliseconds.

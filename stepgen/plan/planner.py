@@ -26,7 +26,9 @@ from stepgen.plan.timings.fast_pwm import LARGEST_PERIOD_CYCLES
 from stepgen.plan.uses import Use, read_uses
 from stepgen.spec import LoadedSpec, Motor
 
-_OTHER_INTERRUPTS_CYCLES = 110  # the core's millis interrupt
+MILLIS_INTERRUPT_CYCLES = 110
+"""The most that the core's millis interrupt may take; verification proves it."""
+
 _SMALLEST_PERIOD_CYCLES = 640  # system 1: 25 000 steps/s at 16 MHz
 
 
@@ -89,7 +91,7 @@ def _minimum_period_cycles(motors: tuple[MotorPlan, ...]) -> int:
     every = sum(motor.isr_bound_cycles for motor in motors)
     for motor in motors:
         own = motor.isr_bound_cycles
-        others = every - own + _OTHER_INTERRUPTS_CYCLES + _masked_bound_cycles(motors)
+        others = every - own + MILLIS_INTERRUPT_CYCLES + _masked_bound_cycles(motors)
         shortest = max(shortest, others + own // 2 + 1)
     return shortest
 

@@ -29,6 +29,9 @@ _FIELD_REASONS = {
     ("string_type", "version"): "is no version; write three numbers in quotes, such as 1.0.0",
     ("string_type", "[key]"): "is no name; write one that begins with a letter, such as pan",
     ("missing", "pins"): "pins is missing; add `pins: [...]`, those of the coils A, B, C and D",
+    ("greater_than_equal", "isr_cycles"): (
+        "is too few for any interrupt; write the most CPU cycles that a step may take, such as 200"
+    ),
     ("model_type", "steps_per_turn"): (
         "is no number of steps; write a whole number such as 200, or full_steps and gear"
     ),

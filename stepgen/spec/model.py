@@ -112,6 +112,14 @@ def _long_form(value: Any) -> Any:  # noqa: ANN401 - whatever the YAML held
     return long
 
 
+class Budget(SpecModel):
+    """
+    What a motor may take of the chip at most; ``stepgen verify`` fails where it can take more.
+    """
+
+    isr_cycles: Annotated[int, Field(ge=1)]
+
+
 class Motor(SpecModel):
     """
     One motor: how it is driven, what paces it, how it moves and what it does at rest.
@@ -123,6 +131,7 @@ class Motor(SpecModel):
     steps_per_turn: Steps | None = None
     at_rest: Literal["hold", "release"] = "release"
     port: Literal["shared", "owned"] = "shared"
+    budget: Budget | None = None
 
 
 def _motor_name(name: str) -> str:

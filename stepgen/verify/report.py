@@ -24,7 +24,8 @@ class MotorFigures:
 
     Args:
         measured_max: Longest single step interrupt, response through RETI.
-        bound: The longest that the plan allows.
+        bound: The longest that the program allows, whatever happens: the static bound.
+        longest_path: The way of that length, function by function.
         cycles_per_step: Mean taken from ``loop()`` for each step of a long constant run.
         max_steps_per_second: Fastest rate that the library accepts.
         jitter_cycles: Latest edge after its deadline, in any scenario.
@@ -35,12 +36,16 @@ class MotorFigures:
     cycles_per_step: float = 0.0
     max_steps_per_second: float = 0.0
     jitter_cycles: int = 0
+    longest_path: tuple[str, ...] = ()
 
 
 @dataclass
 class SpecReport:
     """
     The outcome of verifying one spec with one compiler on one simulator.
+
+    The stack is that of the step interrupts, measured and as the program bounds it;
+    *masked_cycles* is the longest that was measured with interrupts off in a call.
     """
 
     spec: str
@@ -51,6 +56,8 @@ class SpecReport:
     flash_bytes: int = 0
     ram_bytes: int = 0
     stack_bytes: int = 0
+    stack_bound_bytes: int = 0
+    masked_cycles: int = 0
 
     @property
     def passed(self) -> bool:
@@ -81,10 +88,12 @@ class SpecReport:
                     "cycles_per_step": one.cycles_per_step,
                     "max_steps_per_second": one.max_steps_per_second,
                     "jitter_cycles": one.jitter_cycles,
+                    "longest_path": list(one.longest_path),
                 }
                 for name, one in self.motors.items()
             },
             "flash_bytes": self.flash_bytes,
             "ram_bytes": self.ram_bytes,
             "stack_bytes": self.stack_bytes,
+            "stack_bound_bytes": self.stack_bound_bytes,
         }

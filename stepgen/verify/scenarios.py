@@ -208,6 +208,12 @@ def _millis_ends(motors: range, fastest: int) -> Iterator[Action]:
         yield _speed(motor, MILLIS, 70_000, 40)
         yield Wait(1_000_000)
         yield _read(motor)
+        yield _speed(motor, DRIVE, 4_000)
+        yield Wait(60_000)
+        yield _speed(motor, MILLIS, 100_000, 32_768)  # laps are counted, and a timer set anew
+        yield Wait(1_000_000)
+        yield _read(motor)
+        yield _speed(motor, 0, 0)
 
 
 def _short_millis_ends(motors: range, fastest: int, millisecond: int) -> Iterator[Action]:

@@ -163,14 +163,14 @@ SIMAVR = Simulator(
 )
 AVR8JS = Simulator(
     "avr8js",
-    frozenset({"atmega328p", "atmega2560"}),
+    frozenset({"atmega328p", "atmega1280", "atmega2560"}),
     avr8js.find_version,
     avr8js.Machine,
     avr8js.INSTALL,
     longest_scenario_cycles=_AVR8JS_CYCLES,
     corrected=frozenset(
         {"prescaler-phase", "count-kept", "start-order", "flag-sbi", "port-write-cycles"}
-        | {"instruction-cycles", "instruction-cycles-2560"}
+        | {"instruction-cycles", "instruction-cycles-1280", "instruction-cycles-2560"}
         | _MASKING
         | _RESPONSES
     ),

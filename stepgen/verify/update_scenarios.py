@@ -61,6 +61,14 @@ def _of_motor(motor: int, plan: Plan) -> Iterator[Scenario]:
         read,
     )
     yield scenario(
+        "an event with each step, each with another prescaler",
+        Loop.BUSY,
+        speed(_BY_ISR | _POWER | Control.ENDPOINT_MILLIS, 60_000, 60_000, 400_000, 1, 5),
+        wait(1_000),
+        read,
+        speed(0, 0, 0),
+    )
+    yield scenario(
         "events each few steps, by the interrupt",
         Loop.BUSY,
         speed(_BY_ISR | _STEPS | _FASTER, 20_000, 40, 500, 3, 9),

@@ -8,6 +8,7 @@ from pathlib import Path
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
 from stepgen.spec import LoadedSpec
+from stepgen.verify.bounds.judge import judge_worst_case
 from stepgen.verify.conformance.needs import refuse
 from stepgen.verify.example import run_example
 from stepgen.verify.firmware import build_firmware
@@ -31,7 +32,7 @@ def verify_spec(
     track: Track = iter,
 ) -> SpecReport:
     """
-    Prove the library of *loaded*: every scenario against the model, sizes and cycles measured.
+    Prove the library of *loaded*: every scenario by the model, the worst case by the plan.
 
     Args:
         loaded: The spec.
@@ -58,7 +59,6 @@ def verify_spec(
     )
     report.motors = {
         motor.name: MotorFigures(
-            bound=motor.isr_bound_cycles,
             max_steps_per_second=plan.board.f_cpu_hz / plan.minimum_period_cycles,
         )
         for motor in plan.motors
@@ -69,6 +69,7 @@ def verify_spec(
     if simulator.longest_scenario_cycles is None:
         findings = run_example(loaded, plan, firmware.example)
         report.check("the example sketch", findings, "every step as the model says")
+    judge_worst_case(loaded, plan, firmware, compiler, report)
     return report
 
 
@@ -97,6 +98,7 @@ def _judge(outcome: Outcome, plan: Plan, report: SpecReport) -> None:
         tuple(findings),
         f"{steps} steps, {len(outcome.answers)} calls as the model says",
     )
+    report.masked_cycles = max(report.masked_cycles, outcome.masked_cycles)
     report.stack_bytes = max(report.stack_bytes, outcome.stack_bytes)
     for comparison in outcome.comparisons:
         figures = report.motors[comparison.motor]

@@ -31,7 +31,7 @@ WRONG = {
     "simavr": {"compare-pins"},
     "avr8js": {
         *("ctc-icr-period", "count-zero-loads-nothing", "ctc-wrap", "compare-flag-edge"),
-        *("temp-register", "icr-read-only", "uart-buffer"),
+        *("temp-register", "icr-read-only", "uart-buffer", "uart-status"),
     },
     "yasimavr": {
         *("ctc-icr-period", "count-zero-loads-nothing", "icr-read-only"),

@@ -63,12 +63,25 @@ struct Setting {
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
 SHARED Setting chooseSetting(uint32_t period) {
+  const uint16_t high = period >> 16;
   uint8_t select = 1;
-  while (period >> 16) {
-    period >>= 2;
-    if (select < 3) period >>= 1;
-    ++select;
+  uint8_t shift = 0;
+  if (high >= 64) {
+    period >>= 8;
+    select = 4;
+    if (high >= 256) {
+      select = 5;
+      shift = 2;
+    }
+  } else if (high) {
+    select = 2;
+    shift = 3;
+    if (high >= 8) {
+      select = 3;
+      shift = 6;
+    }
   }
+  period >>= shift;
   return {static_cast<uint16_t>(period - 1), select};
 }
 
@@ -81,7 +94,7 @@ struct ConstantMotion {
   uint16_t restHigh;  // and their upper half
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
-  __uint24 endLaps;  // after so many more laps of 32768 ms
+  __uint24 endLaps;  // after so many more laps of 16384 ms
   Setting next;  // the next step sets the timer to this, unless its select is 0,
   uint16_t elapsed;  // which takes so many ticks
 };
@@ -157,8 +170,8 @@ SHARED void nearEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t nearElapsed[] PROGMEM = {
-    119, 14, 1, 0, 0,
-    131, 16, 2, 0, 0,
+    122, 15, 1, 0, 0,
+    140, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -192,7 +205,7 @@ INLINE void nearTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 207 when it
+// Timer 3 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 224 when it
 // goes on in __vector_near_boundary. The wires change 34 cycles after the timer wraps (39 before a
 // boundary). It writes port A and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -272,14 +285,16 @@ INLINE void nearHalt(uint8_t mode) {
   nearReached(mode);
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool nearMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool nearMillisOver(bool count) {
   auto &motion = nearMotion;
   if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
   if (motion.endLaps == 0) return true;
-  --motion.endLaps;
-  motion.endMillis += 0x8000;
+  if (count) {
+    --motion.endLaps;
+    motion.endMillis += 0x4000;
+  }
   return false;
 }
 
@@ -291,7 +306,8 @@ void __vector_near_boundary() {
   auto &motion = nearMotion;
   const uint8_t mode = motion.mode;
   if (mode & kThink) {
-    if ((mode & kCoast) || nearMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || nearMillisOver(!motion.next.select)) {
       GPIOR1 = 1;  // there was no step
       nearCoilsOff();
       nearHalt(0);
@@ -303,7 +319,8 @@ void __vector_near_boundary() {
   const uint16_t rest = motion.rest;
   uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || motion.restHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motion.restHigh) {
       --motion.restHigh;
     } else if (rest) {
       run = rest;
@@ -361,7 +378,12 @@ int8_t nearSetSpeed(
     if (millis) mode |= kThink;
   }
   if (limit == 0) mode |= kEndless;
-  const __uint24 laps = millis >> 15;
+  __uint24 laps = millis >> 14;
+  uint16_t wait = millis & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
@@ -374,7 +396,7 @@ int8_t nearSetSpeed(
   motion.restHigh = rest >> 16;
   GPIOR1 = 1;
   motion.run = mode & kThink ? 1 : 255;
-  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endMillis = millisCount() + wait;
   motion.endLaps = laps;
   motion.next = setting;
   motion.elapsed = elapsed;
@@ -399,7 +421,7 @@ uint8_t nearReadStatus() {
   uint8_t status = nearMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
   const bool limited = (nearMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && nearMillisOver()) status |= MOTOR_STAT_REACHED;
+  if (limited && nearMillisOver(false)) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -496,8 +518,8 @@ SHARED void farEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t farElapsed[] PROGMEM = {
-    125, 15, 1, 0, 0,
-    133, 16, 2, 0, 0,
+    128, 16, 2, 0, 0,
+    142, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -531,7 +553,7 @@ INLINE void farTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 213 when it
+// Timer 4 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 230 when it
 // goes on in __vector_far_boundary. The wires change 40 cycles after the timer wraps (45 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -611,14 +633,16 @@ INLINE void farHalt(uint8_t mode) {
   farReached(mode);
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool farMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool farMillisOver(bool count) {
   auto &motion = farMotion;
   if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
   if (motion.endLaps == 0) return true;
-  --motion.endLaps;
-  motion.endMillis += 0x8000;
+  if (count) {
+    --motion.endLaps;
+    motion.endMillis += 0x4000;
+  }
   return false;
 }
 
@@ -630,7 +654,8 @@ void __vector_far_boundary() {
   auto &motion = farMotion;
   const uint8_t mode = motion.mode;
   if (mode & kThink) {
-    if ((mode & kCoast) || farMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || farMillisOver(!motion.next.select)) {
       farCount = 1;  // there was no step
       farCoilsOff();
       farHalt(0);
@@ -642,7 +667,8 @@ void __vector_far_boundary() {
   const uint16_t rest = motion.rest;
   uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || motion.restHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motion.restHigh) {
       --motion.restHigh;
     } else if (rest) {
       run = rest;
@@ -700,7 +726,12 @@ int8_t farSetSpeed(
     if (millis) mode |= kThink;
   }
   if (limit == 0) mode |= kEndless;
-  const __uint24 laps = millis >> 15;
+  __uint24 laps = millis >> 14;
+  uint16_t wait = millis & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
@@ -713,7 +744,7 @@ int8_t farSetSpeed(
   motion.restHigh = rest >> 16;
   farCount = 1;
   motion.run = mode & kThink ? 1 : 255;
-  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endMillis = millisCount() + wait;
   motion.endLaps = laps;
   motion.next = setting;
   motion.elapsed = elapsed;
@@ -738,7 +769,7 @@ uint8_t farReadStatus() {
   uint8_t status = farMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
   const bool limited = (farMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && farMillisOver()) status |= MOTOR_STAT_REACHED;
+  if (limited && farMillisOver(false)) status |= MOTOR_STAT_REACHED;
   return status;
 }
 

@@ -63,12 +63,25 @@ struct Setting {
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
 SHARED Setting chooseSetting(uint32_t period) {
+  const uint16_t high = period >> 16;
   uint8_t select = 1;
-  while (period >> 16) {
-    period >>= 2;
-    if (select < 3) period >>= 1;
-    ++select;
+  uint8_t shift = 0;
+  if (high >= 64) {
+    period >>= 8;
+    select = 4;
+    if (high >= 256) {
+      select = 5;
+      shift = 2;
+    }
+  } else if (high) {
+    select = 2;
+    shift = 3;
+    if (high >= 8) {
+      select = 3;
+      shift = 6;
+    }
   }
+  period >>= shift;
   return {static_cast<uint16_t>(period - 1), select};
 }
 
@@ -81,7 +94,7 @@ struct ConstantMotion {
   uint16_t restHigh;  // and their upper half
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
-  __uint24 endLaps;  // after so many more laps of 32768 ms
+  __uint24 endLaps;  // after so many more laps of 16384 ms
   Setting next;  // the next step sets the timer to this, unless its select is 0,
   uint16_t elapsed;  // which takes so many ticks
 };
@@ -167,8 +180,8 @@ SHARED void lowerEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t lowerElapsed[] PROGMEM = {
-    120, 15, 1, 0, 0,
-    132, 16, 2, 0, 0,
+    123, 15, 1, 0, 0,
+    141, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -202,7 +215,7 @@ INLINE void lowerTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 208 when it
+// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 225 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -282,14 +295,16 @@ INLINE void lowerHalt(uint8_t mode) {
   lowerReached(mode);
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool lowerMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool lowerMillisOver(bool count) {
   auto &motion = lowerMotion;
   if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
   if (motion.endLaps == 0) return true;
-  --motion.endLaps;
-  motion.endMillis += 0x8000;
+  if (count) {
+    --motion.endLaps;
+    motion.endMillis += 0x4000;
+  }
   return false;
 }
 
@@ -301,7 +316,8 @@ void __vector_lower_boundary() {
   auto &motion = lowerMotion;
   const uint8_t mode = motion.mode;
   if (mode & kThink) {
-    if ((mode & kCoast) || lowerMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || lowerMillisOver(!motion.next.select)) {
       GPIOR1 = 1;  // there was no step
       lowerHalt(0);
       return;
@@ -312,7 +328,8 @@ void __vector_lower_boundary() {
   const uint16_t rest = motion.rest;
   uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || motion.restHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motion.restHigh) {
       --motion.restHigh;
     } else if (rest) {
       run = rest;
@@ -369,7 +386,12 @@ int8_t lowerSetSpeed(
     if (millis) mode |= kThink;
   }
   if (limit == 0) mode |= kEndless;
-  const __uint24 laps = millis >> 15;
+  __uint24 laps = millis >> 14;
+  uint16_t wait = millis & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
@@ -382,7 +404,7 @@ int8_t lowerSetSpeed(
   motion.restHigh = rest >> 16;
   GPIOR1 = 1;
   motion.run = mode & kThink ? 1 : 255;
-  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endMillis = millisCount() + wait;
   motion.endLaps = laps;
   motion.next = setting;
   motion.elapsed = elapsed;
@@ -407,7 +429,7 @@ uint8_t lowerReadStatus() {
   uint8_t status = lowerMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
   const bool limited = (lowerMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && lowerMillisOver()) status |= MOTOR_STAT_REACHED;
+  if (limited && lowerMillisOver(false)) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -502,8 +524,8 @@ SHARED void upperEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t upperElapsed[] PROGMEM = {
-    126, 15, 1, 0, 0,
-    134, 16, 2, 0, 0,
+    129, 16, 2, 0, 0,
+    143, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -537,7 +559,7 @@ INLINE void upperTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 214 when it
+// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 231 when it
 // goes on in __vector_upper_boundary. The wires change 41 cycles after the timer wraps (46 before a
 // boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -617,14 +639,16 @@ INLINE void upperHalt(uint8_t mode) {
   upperReached(mode);
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool upperMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool upperMillisOver(bool count) {
   auto &motion = upperMotion;
   if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
   if (motion.endLaps == 0) return true;
-  --motion.endLaps;
-  motion.endMillis += 0x8000;
+  if (count) {
+    --motion.endLaps;
+    motion.endMillis += 0x4000;
+  }
   return false;
 }
 
@@ -636,7 +660,8 @@ void __vector_upper_boundary() {
   auto &motion = upperMotion;
   const uint8_t mode = motion.mode;
   if (mode & kThink) {
-    if ((mode & kCoast) || upperMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || upperMillisOver(!motion.next.select)) {
       upperCount = 1;  // there was no step
       upperCoilsOff();
       upperHalt(0);
@@ -648,7 +673,8 @@ void __vector_upper_boundary() {
   const uint16_t rest = motion.rest;
   uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || motion.restHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motion.restHigh) {
       --motion.restHigh;
     } else if (rest) {
       run = rest;
@@ -709,7 +735,12 @@ int8_t upperSetSpeed(
     if (millis) mode |= kThink;
   }
   if (limit == 0) mode |= kEndless;
-  const __uint24 laps = millis >> 15;
+  __uint24 laps = millis >> 14;
+  uint16_t wait = millis & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
@@ -722,7 +753,7 @@ int8_t upperSetSpeed(
   motion.restHigh = rest >> 16;
   upperCount = 1;
   motion.run = mode & kThink ? 1 : 255;
-  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endMillis = millisCount() + wait;
   motion.endLaps = laps;
   motion.next = setting;
   motion.elapsed = elapsed;
@@ -747,7 +778,7 @@ uint8_t upperReadStatus() {
   uint8_t status = upperMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
   const bool limited = (upperMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && upperMillisOver()) status |= MOTOR_STAT_REACHED;
+  if (limited && upperMillisOver(false)) status |= MOTOR_STAT_REACHED;
   return status;
 }
 

@@ -67,12 +67,25 @@ struct Setting {
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
 SHARED Setting chooseSetting(uint32_t period) {
+  const uint16_t high = period >> 16;
   uint8_t select = 1;
-  while (period >> 16) {
-    period >>= 2;
-    if (select < 3) period >>= 1;
-    ++select;
+  uint8_t shift = 0;
+  if (high >= 64) {
+    period >>= 8;
+    select = 4;
+    if (high >= 256) {
+      select = 5;
+      shift = 2;
+    }
+  } else if (high) {
+    select = 2;
+    shift = 3;
+    if (high >= 8) {
+      select = 3;
+      shift = 6;
+    }
   }
+  period >>= shift;
   return {static_cast<uint16_t>(period - 1), select};
 }
 
@@ -85,7 +98,7 @@ struct ConstantMotion {
   uint16_t restHigh;  // and their upper half
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
-  __uint24 endLaps;  // after so many more laps of 32768 ms
+  __uint24 endLaps;  // after so many more laps of 16384 ms
   Setting next;  // the next step sets the timer to this, unless its select is 0,
   uint16_t elapsed;  // which takes so many ticks
 };
@@ -196,8 +209,8 @@ SHARED void lowerEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t lowerElapsed[] PROGMEM = {
-    120, 15, 1, 0, 0,
-    132, 16, 2, 0, 0,
+    123, 15, 1, 0, 0,
+    141, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -231,7 +244,7 @@ INLINE void lowerTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 208 when it
+// Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 225 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -311,14 +324,16 @@ INLINE void lowerHalt(uint8_t mode) {
   lowerReached(mode);
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool lowerMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool lowerMillisOver(bool count) {
   auto &motion = lowerMotion;
   if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
   if (motion.endLaps == 0) return true;
-  --motion.endLaps;
-  motion.endMillis += 0x8000;
+  if (count) {
+    --motion.endLaps;
+    motion.endMillis += 0x4000;
+  }
   return false;
 }
 
@@ -330,7 +345,8 @@ void __vector_lower_boundary() {
   auto &motion = lowerMotion;
   const uint8_t mode = motion.mode;
   if (mode & kThink) {
-    if ((mode & kCoast) || lowerMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || lowerMillisOver(!motion.next.select)) {
       GPIOR1 = 1;  // there was no step
       lowerCoilsOff();
       lowerHalt(0);
@@ -342,7 +358,8 @@ void __vector_lower_boundary() {
   const uint16_t rest = motion.rest;
   uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || motion.restHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motion.restHigh) {
       --motion.restHigh;
     } else if (rest) {
       run = rest;
@@ -402,7 +419,12 @@ int8_t lowerSetSpeed(
     if (millis) mode |= kThink;
   }
   if (limit == 0) mode |= kEndless;
-  const __uint24 laps = millis >> 15;
+  __uint24 laps = millis >> 14;
+  uint16_t wait = millis & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
@@ -415,7 +437,7 @@ int8_t lowerSetSpeed(
   motion.restHigh = rest >> 16;
   GPIOR1 = 1;
   motion.run = mode & kThink ? 1 : 255;
-  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endMillis = millisCount() + wait;
   motion.endLaps = laps;
   motion.next = setting;
   motion.elapsed = elapsed;
@@ -440,7 +462,7 @@ uint8_t lowerReadStatus() {
   uint8_t status = lowerMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
   const bool limited = (lowerMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && lowerMillisOver()) status |= MOTOR_STAT_REACHED;
+  if (limited && lowerMillisOver(false)) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -535,11 +557,11 @@ SHARED void upperEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself; then both with a limit in
 // milliseconds.
-static const uint8_t upperElapsed[] PROGMEM = {
+static const uint16_t upperElapsed[] PROGMEM = {
     210, 26, 3, 0, 0,
-    214, 26, 3, 0, 0,
+    216, 27, 3, 0, 0,
     250, 31, 3, 0, 0,
-    254, 31, 3, 0, 0,
+    256, 32, 4, 1, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -552,7 +574,7 @@ INLINE void upperStopTimer() {
 // Sets a stopped or running timer to work. OCR5A is written twice: without WGM51
 // and WGM50 (mode 12) it goes straight to the comparator, with them (mode 15) into the
 // buffer from which each period takes it.
-SHARED void upperRunTimer(uint8_t elapsed) {
+SHARED void upperRunTimer(uint16_t elapsed) {
   Setting &next = near(upperMotion).next;
   TCCR5B = _BV(WGM53) | _BV(WGM52);
   TCCR5A = 0;
@@ -573,7 +595,7 @@ SHARED void upperTakeOver() {
   if (!(TIFR5 & _BV(TOV5))) next.select = 0;
 }
 
-// Timer 5 overflow: one step, 58 cycles from the interrupt's response to RETI; at most 777 when it
+// Timer 5 overflow: one step, 58 cycles from the interrupt's response to RETI; at most 859 when it
 // goes on in __vector_upper_boundary. The wires change 45 cycles after the timer wraps (69 before a
 // boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -763,19 +785,20 @@ void __vector_upper_boundary() {
     return;
   }
   if (motion.next.select) {
-    upperRunTimer(pgm_read_byte(&upperElapsed[row + motion.next.select - 1]));
+    upperRunTimer(pgm_read_word(&upperElapsed[row + motion.next.select - 1]));
   }
   uint8_t run = 255;
   if (motion.updates && (motion.control & MOTOR_CTRL_IRQ_TIMING)) {
-    uint16_t until = upperUntilEvent();
+    const uint16_t until = upperUntilEvent();
     if (until == 0) {
       upperUpdate();
       run = 1;  // look again with the next step
-    } else if (motion.control & MOTOR_CTRL_UPDATE_STEPS) {
-      if (until < run) run = until;
-      until = kFar;
     }
-    if (until < wait) wait = until;
+    if (!(motion.control & MOTOR_CTRL_UPDATE_STEPS)) {
+      if (until < wait) wait = until;
+    } else if (until && until < run) {
+      run = until;
+    }
   } else if (!(motion.mode & kLimited)) {
     motion.mode &= ~kClock;
   }
@@ -783,14 +806,14 @@ void __vector_upper_boundary() {
   if (count) return;
   const uint32_t rest = motion.rest;
   if (rest < run && !(motion.mode & kEndless)) {
-    if (!rest) {
+    run = rest;
+    if (!run) {
       // The rotor is still on its way: the coils go off one interval after the last step.
       upperReached(kThink | kCoast | kEnded);
       motion.rest = -1;
       upperCount = 1;
       return;
     }
-    run = rest;
   }
   motion.rest = rest - run;
   upperCount = run;
@@ -826,8 +849,8 @@ INLINE void upperStart() {
     if (steps) mode |= kLimited | kClock;
     steps = 0;
   }
-  if (steps == 0) mode |= kEndless;
   const uint32_t here = upperPosition();
+  if (steps == 0) mode |= kEndless;
   motion.rest = steps - 1;
   upperCount = 1;
   if (control & MOTOR_CTRL_DIRECTION) {
@@ -900,6 +923,9 @@ void upperTimerUpdateCheck() {
     if (mine && motion.updates && (motion.mode & kRunning) && upperUntilEvent() == 0) {
       upperUpdate();
     }
+  }
+  {
+    const Masked masked;
     uint8_t status = motion.status;
     if (!(status & MOTOR_STAT_REACH_CALLED) && motion.onReached &&
         ((motion.mode & kEnded) || upperMillisLeft() == 0)) {

@@ -66,12 +66,25 @@ struct Setting {
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
 SHARED Setting chooseSetting(uint32_t period) {
+  const uint16_t high = period >> 16;
   uint8_t select = 1;
-  while (period >> 16) {
-    period >>= 2;
-    if (select < 3) period >>= 1;
-    ++select;
+  uint8_t shift = 0;
+  if (high >= 64) {
+    period >>= 8;
+    select = 4;
+    if (high >= 256) {
+      select = 5;
+      shift = 2;
+    }
+  } else if (high) {
+    select = 2;
+    shift = 3;
+    if (high >= 8) {
+      select = 3;
+      shift = 6;
+    }
   }
+  period >>= shift;
   return {static_cast<uint16_t>(period - 1), select};
 }
 
@@ -188,9 +201,9 @@ SHARED void motorEnergise() {
 // milliseconds.
 static const uint16_t motorElapsed[] PROGMEM = {
     231, 28, 3, 0, 0,
-    257, 32, 4, 1, 0,
+    259, 32, 4, 1, 0,
     271, 33, 4, 1, 0,
-    297, 37, 4, 1, 0,
+    299, 37, 4, 1, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -224,7 +237,7 @@ SHARED void motorTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 78 cycles from the interrupt's response to RETI; at most 814 when it
+// Timer 1 overflow: one step, 78 cycles from the interrupt's response to RETI; at most 892 when it
 // goes on in __vector_motor_boundary. The wires change 64 cycles after the timer wraps (88 before a
 // boundary). It writes port B, C and D and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.
@@ -450,15 +463,16 @@ void __vector_motor_boundary() {
   }
   uint8_t run = 255;
   if (motion.updates && (motion.control & MOTOR_CTRL_IRQ_TIMING)) {
-    uint16_t until = motorUntilEvent();
+    const uint16_t until = motorUntilEvent();
     if (until == 0) {
       motorUpdate();
       run = 1;  // look again with the next step
-    } else if (motion.control & MOTOR_CTRL_UPDATE_STEPS) {
-      if (until < run) run = until;
-      until = kFar;
     }
-    if (until < wait) wait = until;
+    if (!(motion.control & MOTOR_CTRL_UPDATE_STEPS)) {
+      if (until < wait) wait = until;
+    } else if (until && until < run) {
+      run = until;
+    }
   } else if (!(motion.mode & kLimited)) {
     motion.mode &= ~kClock;
   }
@@ -466,11 +480,11 @@ void __vector_motor_boundary() {
   if (count) return;
   const uint32_t rest = motion.rest;
   if (rest < run && !(motion.mode & kEndless)) {
-    if (!rest) {
+    run = rest;
+    if (!run) {
       motorHalt(kEnded);
       return;
     }
-    run = rest;
   }
   motion.rest = rest - run;
   GPIOR1 = run;
@@ -507,8 +521,8 @@ INLINE void motorStart() {
     if (steps) mode |= kLimited | kClock;
     steps = 0;
   }
-  if (steps == 0) mode |= kEndless;
   const uint32_t here = motorPosition();
+  if (steps == 0) mode |= kEndless;
   motion.rest = steps - 1;
   GPIOR1 = 1;
   if (control & MOTOR_CTRL_DIRECTION) {
@@ -581,6 +595,9 @@ void motorTimerUpdateCheck() {
     if (mine && motion.updates && (motion.mode & kRunning) && motorUntilEvent() == 0) {
       motorUpdate();
     }
+  }
+  {
+    const Masked masked;
     uint8_t status = motion.status;
     if (!(status & MOTOR_STAT_REACH_CALLED) && motion.onReached &&
         ((motion.mode & kEnded) || motorMillisLeft() == 0)) {

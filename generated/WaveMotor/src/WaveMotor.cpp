@@ -63,12 +63,25 @@ struct Setting {
 // The finest setting for a period in I/O clocks: the smallest prescaler p of 1, 8, 64, 256 and
 // 1024 with period / p < 65536. A period lasts TOP + 1 ticks, so TOP is period / p - 1.
 SHARED Setting chooseSetting(uint32_t period) {
+  const uint16_t high = period >> 16;
   uint8_t select = 1;
-  while (period >> 16) {
-    period >>= 2;
-    if (select < 3) period >>= 1;
-    ++select;
+  uint8_t shift = 0;
+  if (high >= 64) {
+    period >>= 8;
+    select = 4;
+    if (high >= 256) {
+      select = 5;
+      shift = 2;
+    }
+  } else if (high) {
+    select = 2;
+    shift = 3;
+    if (high >= 8) {
+      select = 3;
+      shift = 6;
+    }
   }
+  period >>= shift;
   return {static_cast<uint16_t>(period - 1), select};
 }
 
@@ -81,7 +94,7 @@ struct ConstantMotion {
   uint16_t restHigh;  // and their upper half
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
-  __uint24 endLaps;  // after so many more laps of 32768 ms
+  __uint24 endLaps;  // after so many more laps of 16384 ms
   Setting next;  // the next step sets the timer to this, unless its select is 0,
   uint16_t elapsed;  // which takes so many ticks
 };
@@ -157,8 +170,8 @@ SHARED void motorEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t motorElapsed[] PROGMEM = {
-    119, 14, 1, 0, 0,
-    131, 16, 2, 0, 0,
+    122, 15, 1, 0, 0,
+    140, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -192,7 +205,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 207 when it
+// Timer 1 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 224 when it
 // goes on in __vector_motor_boundary. The wires change 34 cycles after the timer wraps (39 before a
 // boundary). It writes port C and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -272,14 +285,16 @@ INLINE void motorHalt(uint8_t mode) {
   motorReached(mode);
 }
 
-// Tells whether the millisecond limit has passed. It must be asked once in 16 s at least, and is:
-// before each step. Only while interrupts are off.
-INLINE bool motorMillisOver() {
+// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
+// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
+INLINE bool motorMillisOver(bool count) {
   auto &motion = motorMotion;
   if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
   if (motion.endLaps == 0) return true;
-  --motion.endLaps;
-  motion.endMillis += 0x8000;
+  if (count) {
+    --motion.endLaps;
+    motion.endMillis += 0x4000;
+  }
   return false;
 }
 
@@ -291,7 +306,8 @@ void __vector_motor_boundary() {
   auto &motion = motorMotion;
   const uint8_t mode = motion.mode;
   if (mode & kThink) {
-    if ((mode & kCoast) || motorMillisOver()) {
+    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    if ((mode & kCoast) || motorMillisOver(!motion.next.select)) {
       GPIOR1 = 1;  // there was no step
       motorHalt(0);
       return;
@@ -302,7 +318,8 @@ void __vector_motor_boundary() {
   const uint16_t rest = motion.rest;
   uint8_t run = motion.run;
   if (rest < run) {
-    if ((mode & kEndless) || motion.restHigh) {
+    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
+    if ((mode & (kEndless | kThink)) || motion.restHigh) {
       --motion.restHigh;
     } else if (rest) {
       run = rest;
@@ -357,7 +374,12 @@ int8_t motorSetSpeed(
     if (millis) mode |= kThink;
   }
   if (limit == 0) mode |= kEndless;
-  const __uint24 laps = millis >> 15;
+  __uint24 laps = millis >> 14;
+  uint16_t wait = millis & 0x3FFF;
+  if (laps) {
+    --laps;
+    wait += 0x4000;
+  }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
@@ -370,7 +392,7 @@ int8_t motorSetSpeed(
   motion.restHigh = rest >> 16;
   GPIOR1 = 1;
   motion.run = mode & kThink ? 1 : 255;
-  motion.endMillis = millisCount() + (millis & 0x7FFF);
+  motion.endMillis = millisCount() + wait;
   motion.endLaps = laps;
   motion.next = setting;
   motion.elapsed = elapsed;
@@ -395,7 +417,7 @@ uint8_t motorReadStatus() {
   uint8_t status = motorMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
   const bool limited = (motorMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && motorMillisOver()) status |= MOTOR_STAT_REACHED;
+  if (limited && motorMillisOver(false)) status |= MOTOR_STAT_REACHED;
   return status;
 }
 

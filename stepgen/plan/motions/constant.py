@@ -17,5 +17,5 @@ def plan(spec: Constant) -> Motion:
         to_clock_cycles=0,
         thinking_cycles=0,
         limit_cycles=0,
-        masked_cycles=340,
+        masked_cycles=285,
     )

@@ -13,9 +13,9 @@ def plan(spec: UpdateEvents) -> Motion:
     return Motion(
         kind=spec.kind,
         watches_clock=True,
-        handler_cycles=540,
-        to_clock_cycles=61,
-        thinking_cycles=69,
+        handler_cycles=605,
+        to_clock_cycles=58,
+        thinking_cycles=62,
         limit_cycles=40,
         masked_cycles=500,
         dumps=spec.debug,
