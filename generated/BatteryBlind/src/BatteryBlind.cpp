@@ -215,6 +215,7 @@ SHARED void motorRunTimer(uint8_t elapsed) {
   TCCR1A = 0;
   OCR1A = next.top;
   TCNT1 = elapsed;
+  TIFR1 = _BV(TOV1);  // the old setting makes no step any more
   TCCR1A = _BV(WGM11) | _BV(WGM10);
   OCR1A = next.top;
   TCCR1B = _BV(WGM13) | _BV(WGM12) | next.select;
@@ -230,7 +231,7 @@ SHARED void motorTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 852 when it
+// Timer 1 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 867 when it
 // goes on in __vector_motor_boundary. The wires change 38 cycles after the timer wraps (62 before a
 // boundary). It writes port D and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -388,12 +389,10 @@ SHARED void motorUpdate() {
   if (--motion.updates == 0) motion.status |= MOTOR_STAT_SPIN_FIXED;
   motion.next = chooseSetting(motion.top);
   motorTakeOver();
-  const uint8_t count = GPIOR1;
-  if (motion.next.select && count) {
-    const uint8_t ahead = count - 1;
-    GPIOR1 = 1;  // the next step sets the timer
-    motion.rest += ahead;
-  }
+  if (!motion.next.select) return;
+  const uint8_t ahead = GPIOR1 - 1;
+  GPIOR1 = 1;  // the next step sets the timer
+  motion.rest += ahead;
 }
 
 // Where the step interrupt goes on in its rare ways: after the last step of a run, and instead
@@ -423,35 +422,36 @@ void __vector_motor_boundary() {
     motorRunTimer(pgm_read_byte(&motorElapsed[row + motion.next.select - 1]));
   }
   uint8_t run = 255;
+  bool due = false;
   if (motion.updates && (motion.control & MOTOR_CTRL_IRQ_TIMING)) {
     const uint16_t until = motorUntilEvent();
-    if (until == 0) {
-      motorUpdate();
-      run = 1;  // look again with the next step
-    }
+    due = until == 0;
     if (!(motion.control & MOTOR_CTRL_UPDATE_STEPS)) {
       if (until < wait) wait = until;
-    } else if (until && until < run) {
+    } else if (until < run) {
       run = until;
     }
+    if (due) run = 1;  // look again with the next step
   } else if (!(motion.mode & kLimited)) {
     motion.mode &= ~kClock;
   }
   motion.wake = millisNow() + wait;
-  if (count) return;
-  const uint32_t rest = motion.rest;
-  if (rest < run && !(motion.mode & kEndless)) {
-    run = rest;
-    if (!run) {
-      // The rotor is still on its way: the coils go off one interval after the last step.
-      motorReached(kThink | kCoast | kEnded);
-      motion.rest = -1;
-      GPIOR1 = 1;
-      return;
+  if (count == 0) {
+    const uint32_t rest = motion.rest;
+    if (rest < run && !(motion.mode & kEndless)) {
+      run = rest;
+      if (!run) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        motorReached(kThink | kCoast | kEnded);
+        motion.rest = -1;
+        GPIOR1 = 1;
+        return;
+      }
     }
+    motion.rest = rest - run;
+    GPIOR1 = run;
   }
-  motion.rest = rest - run;
-  GPIOR1 = run;
+  if (due) motorUpdate();
 }
 
 void motorShieldInit() {
@@ -502,7 +502,6 @@ INLINE void motorStart() {
   if (before & kRunning) {
     motorTakeOver();
   } else {
-    motorStopTimer();
     motorEnergise();
     motorRunTimer(0);
     TIMSK1 = _BV(TOIE1);
@@ -547,12 +546,13 @@ int8_t motorSetSpeed(
 
 void motorTimerUpdateCheck() {
   auto &motion = near(motorMotion);
-  bool reached = false;
-  bool fault = false;
+  void (*onReached)() = nullptr;
+  void (*onFault)() = nullptr;
   {
     const Masked masked;
     const bool mine = !(motion.control & MOTOR_CTRL_IRQ_TIMING);
-    if (mine && motion.updates && (motion.mode & kRunning) && motorUntilEvent() == 0) {
+    if (mine && motion.updates && (motion.mode & kRunning) && motorUntilEvent() == 0 &&
+        motorMillisLeft() != 0) {
       motorUpdate();
     }
   }
@@ -561,19 +561,19 @@ void motorTimerUpdateCheck() {
     uint8_t status = motion.status;
     if (!(status & MOTOR_STAT_REACH_CALLED) && motion.onReached &&
         ((motion.mode & kEnded) || motorMillisLeft() == 0)) {
-      reached = true;
+      onReached = motion.onReached;
       status |= MOTOR_STAT_REACH_CALLED;
     }
     constexpr uint8_t kFault = MOTOR_STAT_FAULT | MOTOR_STAT_FAULT_CALLED;
     if ((status & kFault) == MOTOR_STAT_FAULT && motion.onFault) {
-      fault = true;
+      onFault = motion.onFault;
       status |= MOTOR_STAT_FAULT_CALLED;
       if (status & MOTOR_STAT_TIMER_DIV_ERROR) status |= MOTOR_STAT_TIMER_DIV_CALLED;
     }
     motion.status = status;
   }
-  if (reached) motion.onReached();
-  if (fault) motion.onFault();
+  if (onReached) onReached();
+  if (onFault) onFault();
 }
 
 void motorCallBackPositionReached(void (*userFunction)()) {

@@ -178,8 +178,8 @@ SHARED void motorEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t motorElapsed[] PROGMEM = {
-    122, 15, 1, 0, 0,
-    140, 17, 2, 0, 0,
+    124, 15, 1, 0, 0,
+    142, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -198,6 +198,7 @@ INLINE void motorRunTimer(uint8_t elapsed) {
   TCCR1A = 0;
   OCR1A = next.top;
   TCNT1 = elapsed;
+  TIFR1 = _BV(TOV1);  // the old setting makes no step any more
   TCCR1A = _BV(WGM11) | _BV(WGM10);
   OCR1A = next.top;
   TCCR1B = _BV(WGM13) | _BV(WGM12) | next.select;
@@ -213,7 +214,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 224 when it
+// Timer 1 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 226 when it
 // goes on in __vector_motor_boundary. The wires change 34 cycles after the timer wraps (39 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -416,7 +417,6 @@ int8_t motorSetSpeed(
   if (before & kRunning) {
     motorTakeOver();
   } else {
-    motorStopTimer();
     motorEnergise();
     motorRunTimer(0);
     TIMSK1 = _BV(TOIE1);

@@ -56,7 +56,7 @@ constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops
 
 // The range of a virtual timer TOP: I/O clocks between two steps.
-constexpr uint32_t MOTOR_MIN_TOP = 1068UL;  // 14981 steps/s
+constexpr uint32_t MOTOR_MIN_TOP = 1096UL;  // 14599 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 4.19 s
 
 // I/O clocks in a second: 16 MHz, divided as CLKPR says at the moment. After a
@@ -126,7 +126,7 @@ void motorCallBackFault(void (*userFunction)());
 // Prints the state of the motion, ten lines as those of system 1: control bits, virtual TOP, what
 // the next event changes, steps left (0: no end), when that event is due, status bits, interval of
 // the events, when a limit in milliseconds ends (0: none), events left, phase. Times are counts
-// of millis().
+// of millis(); an event that is counted in steps is due after so many more.
 void debugDump(Print &out = Serial);
 
 // How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it

@@ -173,8 +173,8 @@ SHARED void motorEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t motorElapsed[] PROGMEM = {
-    123, 15, 1, 0, 0,
-    141, 17, 2, 0, 0,
+    125, 15, 1, 0, 0,
+    143, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -193,6 +193,7 @@ INLINE void motorRunTimer(uint8_t elapsed) {
   TCCR5A = 0;
   OCR5A = next.top;
   TCNT5 = elapsed;
+  TIFR5 = _BV(TOV5);  // the old setting makes no step any more
   TCCR5A = _BV(WGM51) | _BV(WGM50);
   OCR5A = next.top;
   TCCR5B = _BV(WGM53) | _BV(WGM52) | next.select;
@@ -208,7 +209,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR5 & _BV(TOV5))) next.select = 0;
 }
 
-// Timer 5 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 225 when it
+// Timer 5 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 227 when it
 // goes on in __vector_motor_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -411,7 +412,6 @@ int8_t motorSetSpeed(
   if (before & kRunning) {
     motorTakeOver();
   } else {
-    motorStopTimer();
     motorEnergise();
     motorRunTimer(0);
     TIMSK5 = _BV(TOIE5);

@@ -182,8 +182,8 @@ SHARED void motorEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t motorElapsed[] PROGMEM = {
-    138, 17, 2, 0, 0,
-    162, 20, 2, 0, 0,
+    140, 17, 2, 0, 0,
+    164, 20, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -202,6 +202,7 @@ INLINE void motorRunTimer(uint8_t elapsed) {
   TCCR1A = 0;
   OCR1A = next.top;
   TCNT1 = elapsed;
+  TIFR1 = _BV(TOV1);  // the old setting makes no step any more
   TCCR1A = _BV(WGM11) | _BV(WGM10);
   OCR1A = next.top;
   TCCR1B = _BV(WGM13) | _BV(WGM12) | next.select;
@@ -217,7 +218,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 62 cycles from the interrupt's response to RETI; at most 246 when it
+// Timer 1 overflow: one step, 62 cycles from the interrupt's response to RETI; at most 248 when it
 // goes on in __vector_motor_boundary. The wires change 48 cycles after the timer wraps (53 before a
 // boundary). It writes port B and D and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.
@@ -443,7 +444,6 @@ int8_t motorSetSpeed(
   if (before & kRunning) {
     motorTakeOver();
   } else {
-    motorStopTimer();
     motorEnergise();
     motorRunTimer(0);
     TIMSK1 = _BV(TOIE1);

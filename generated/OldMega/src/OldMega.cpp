@@ -170,8 +170,8 @@ SHARED void nearEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t nearElapsed[] PROGMEM = {
-    122, 15, 1, 0, 0,
-    140, 17, 2, 0, 0,
+    124, 15, 1, 0, 0,
+    142, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -190,6 +190,7 @@ INLINE void nearRunTimer(uint8_t elapsed) {
   TCCR3A = 0;
   OCR3A = next.top;
   TCNT3 = elapsed;
+  TIFR3 = _BV(TOV3);  // the old setting makes no step any more
   TCCR3A = _BV(WGM31) | _BV(WGM30);
   OCR3A = next.top;
   TCCR3B = _BV(WGM33) | _BV(WGM32) | next.select;
@@ -205,7 +206,7 @@ INLINE void nearTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 224 when it
+// Timer 3 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 226 when it
 // goes on in __vector_near_boundary. The wires change 34 cycles after the timer wraps (39 before a
 // boundary). It writes port A and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -408,7 +409,6 @@ int8_t nearSetSpeed(
   if (before & kRunning) {
     nearTakeOver();
   } else {
-    nearStopTimer();
     nearEnergise();
     nearRunTimer(0);
     TIMSK3 = _BV(TOIE3);
@@ -518,8 +518,8 @@ SHARED void farEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t farElapsed[] PROGMEM = {
-    128, 16, 2, 0, 0,
-    142, 17, 2, 0, 0,
+    130, 16, 2, 0, 0,
+    144, 18, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -538,6 +538,7 @@ INLINE void farRunTimer(uint8_t elapsed) {
   TCCR4A = 0;
   OCR4A = next.top;
   TCNT4 = elapsed;
+  TIFR4 = _BV(TOV4);  // the old setting makes no step any more
   TCCR4A = _BV(WGM41) | _BV(WGM40);
   OCR4A = next.top;
   TCCR4B = _BV(WGM43) | _BV(WGM42) | next.select;
@@ -553,7 +554,7 @@ INLINE void farTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 230 when it
+// Timer 4 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 232 when it
 // goes on in __vector_far_boundary. The wires change 40 cycles after the timer wraps (45 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -756,7 +757,6 @@ int8_t farSetSpeed(
   if (before & kRunning) {
     farTakeOver();
   } else {
-    farStopTimer();
     farEnergise();
     farRunTimer(0);
     TIMSK4 = _BV(TOIE4);

@@ -178,8 +178,8 @@ SHARED void panEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t panElapsed[] PROGMEM = {
-    125, 15, 1, 0, 0,
-    141, 17, 2, 0, 0,
+    127, 15, 1, 0, 0,
+    143, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -198,6 +198,7 @@ INLINE void panRunTimer(uint8_t elapsed) {
   TCCR4A = 0;
   OCR4A = next.top;
   TCNT4 = elapsed;
+  TIFR4 = _BV(TOV4);  // the old setting makes no step any more
   TCCR4A = _BV(WGM41) | _BV(WGM40);
   OCR4A = next.top;
   TCCR4B = _BV(WGM43) | _BV(WGM42) | next.select;
@@ -213,7 +214,7 @@ INLINE void panTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 227 when it
+// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 229 when it
 // goes on in __vector_pan_boundary. The wires change 37 cycles after the timer wraps (42 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -416,7 +417,6 @@ int8_t panSetSpeed(
   if (before & kRunning) {
     panTakeOver();
   } else {
-    panStopTimer();
     panEnergise();
     panRunTimer(0);
     TIMSK4 = _BV(TOIE4);
@@ -521,8 +521,8 @@ SHARED void tiltEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t tiltElapsed[] PROGMEM = {
-    127, 15, 1, 0, 0,
-    143, 17, 2, 0, 0,
+    129, 16, 2, 0, 0,
+    145, 18, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -541,6 +541,7 @@ INLINE void tiltRunTimer(uint8_t elapsed) {
   TCCR3A = 0;
   OCR3A = next.top;
   TCNT3 = elapsed;
+  TIFR3 = _BV(TOV3);  // the old setting makes no step any more
   TCCR3A = _BV(WGM31) | _BV(WGM30);
   OCR3A = next.top;
   TCCR3B = _BV(WGM33) | _BV(WGM32) | next.select;
@@ -556,7 +557,7 @@ INLINE void tiltTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 229 when it
+// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 231 when it
 // goes on in __vector_tilt_boundary. The wires change 39 cycles after the timer wraps (44 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -759,7 +760,6 @@ int8_t tiltSetSpeed(
   if (before & kRunning) {
     tiltTakeOver();
   } else {
-    tiltStopTimer();
     tiltEnergise();
     tiltRunTimer(0);
     TIMSK3 = _BV(TOIE3);

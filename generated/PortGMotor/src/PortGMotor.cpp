@@ -159,8 +159,8 @@ SHARED void motorEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t motorElapsed[] PROGMEM = {
-    100, 12, 1, 0, 0,
-    119, 14, 1, 0, 0,
+    102, 12, 1, 0, 0,
+    121, 15, 1, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -179,6 +179,7 @@ INLINE void motorRunTimer(uint8_t elapsed) {
   TCCR3A = 0;
   OCR3A = next.top;
   TCNT3 = elapsed;
+  TIFR3 = _BV(TOV3);  // the old setting makes no step any more
   TCCR3A = _BV(WGM31) | _BV(WGM30);
   OCR3A = next.top;
   TCCR3B = _BV(WGM33) | _BV(WGM32) | next.select;
@@ -194,7 +195,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 30 cycles from the interrupt's response to RETI; at most 198 when it
+// Timer 3 overflow: one step, 30 cycles from the interrupt's response to RETI; at most 200 when it
 // goes on in __vector_motor_boundary. The wires change 18 cycles after the timer wraps (23 before a
 // boundary). It writes port G and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -376,7 +377,6 @@ int8_t motorSetSpeed(
   if (before & kRunning) {
     motorTakeOver();
   } else {
-    motorStopTimer();
     motorEnergise();
     motorRunTimer(0);
     TIMSK3 = _BV(TOIE3);

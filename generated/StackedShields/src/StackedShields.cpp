@@ -180,8 +180,8 @@ SHARED void lowerEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t lowerElapsed[] PROGMEM = {
-    123, 15, 1, 0, 0,
-    141, 17, 2, 0, 0,
+    125, 15, 1, 0, 0,
+    143, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -200,6 +200,7 @@ INLINE void lowerRunTimer(uint8_t elapsed) {
   TCCR1A = 0;
   OCR1A = next.top;
   TCNT1 = elapsed;
+  TIFR1 = _BV(TOV1);  // the old setting makes no step any more
   TCCR1A = _BV(WGM11) | _BV(WGM10);
   OCR1A = next.top;
   TCCR1B = _BV(WGM13) | _BV(WGM12) | next.select;
@@ -215,7 +216,7 @@ INLINE void lowerTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 225 when it
+// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 227 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -416,7 +417,6 @@ int8_t lowerSetSpeed(
   if (before & kRunning) {
     lowerTakeOver();
   } else {
-    lowerStopTimer();
     lowerEnergise();
     lowerRunTimer(0);
     TIMSK1 = _BV(TOIE1);
@@ -524,8 +524,8 @@ SHARED void upperEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t upperElapsed[] PROGMEM = {
-    129, 16, 2, 0, 0,
-    143, 17, 2, 0, 0,
+    131, 16, 2, 0, 0,
+    145, 18, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -544,6 +544,7 @@ INLINE void upperRunTimer(uint8_t elapsed) {
   TCCR3A = 0;
   OCR3A = next.top;
   TCNT3 = elapsed;
+  TIFR3 = _BV(TOV3);  // the old setting makes no step any more
   TCCR3A = _BV(WGM31) | _BV(WGM30);
   OCR3A = next.top;
   TCCR3B = _BV(WGM33) | _BV(WGM32) | next.select;
@@ -559,7 +560,7 @@ INLINE void upperTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 231 when it
+// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 233 when it
 // goes on in __vector_upper_boundary. The wires change 41 cycles after the timer wraps (46 before a
 // boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -765,7 +766,6 @@ int8_t upperSetSpeed(
   if (before & kRunning) {
     upperTakeOver();
   } else {
-    upperStopTimer();
     upperEnergise();
     upperRunTimer(0);
     TIMSK3 = _BV(TOIE3);

@@ -209,8 +209,8 @@ SHARED void lowerEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t lowerElapsed[] PROGMEM = {
-    123, 15, 1, 0, 0,
-    141, 17, 2, 0, 0,
+    125, 15, 1, 0, 0,
+    143, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -229,6 +229,7 @@ INLINE void lowerRunTimer(uint8_t elapsed) {
   TCCR4A = 0;
   OCR4A = next.top;
   TCNT4 = elapsed;
+  TIFR4 = _BV(TOV4);  // the old setting makes no step any more
   TCCR4A = _BV(WGM41) | _BV(WGM40);
   OCR4A = next.top;
   TCCR4B = _BV(WGM43) | _BV(WGM42) | next.select;
@@ -244,7 +245,7 @@ INLINE void lowerTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 225 when it
+// Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 227 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -449,7 +450,6 @@ int8_t lowerSetSpeed(
   if (before & kRunning) {
     lowerTakeOver();
   } else {
-    lowerStopTimer();
     lowerEnergise();
     lowerRunTimer(0);
     TIMSK4 = _BV(TOIE4);
@@ -580,6 +580,7 @@ SHARED void upperRunTimer(uint16_t elapsed) {
   TCCR5A = 0;
   OCR5A = next.top;
   TCNT5 = elapsed;
+  TIFR5 = _BV(TOV5);  // the old setting makes no step any more
   TCCR5A = _BV(WGM51) | _BV(WGM50);
   OCR5A = next.top;
   TCCR5B = _BV(WGM53) | _BV(WGM52) | next.select;
@@ -595,7 +596,7 @@ SHARED void upperTakeOver() {
   if (!(TIFR5 & _BV(TOV5))) next.select = 0;
 }
 
-// Timer 5 overflow: one step, 58 cycles from the interrupt's response to RETI; at most 859 when it
+// Timer 5 overflow: one step, 58 cycles from the interrupt's response to RETI; at most 874 when it
 // goes on in __vector_upper_boundary. The wires change 45 cycles after the timer wraps (69 before a
 // boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -753,12 +754,10 @@ SHARED void upperUpdate() {
   if (--motion.updates == 0) motion.status |= MOTOR_STAT_SPIN_FIXED;
   motion.next = chooseSetting(motion.top);
   upperTakeOver();
-  const uint8_t count = upperCount;
-  if (motion.next.select && count) {
-    const uint8_t ahead = count - 1;
-    upperCount = 1;  // the next step sets the timer
-    motion.rest += ahead;
-  }
+  if (!motion.next.select) return;
+  const uint8_t ahead = upperCount - 1;
+  upperCount = 1;  // the next step sets the timer
+  motion.rest += ahead;
 }
 
 // Where the step interrupt goes on in its rare ways: after the last step of a run, and instead
@@ -788,35 +787,36 @@ void __vector_upper_boundary() {
     upperRunTimer(pgm_read_word(&upperElapsed[row + motion.next.select - 1]));
   }
   uint8_t run = 255;
+  bool due = false;
   if (motion.updates && (motion.control & MOTOR_CTRL_IRQ_TIMING)) {
     const uint16_t until = upperUntilEvent();
-    if (until == 0) {
-      upperUpdate();
-      run = 1;  // look again with the next step
-    }
+    due = until == 0;
     if (!(motion.control & MOTOR_CTRL_UPDATE_STEPS)) {
       if (until < wait) wait = until;
-    } else if (until && until < run) {
+    } else if (until < run) {
       run = until;
     }
+    if (due) run = 1;  // look again with the next step
   } else if (!(motion.mode & kLimited)) {
     motion.mode &= ~kClock;
   }
   motion.wake = millisNow() + wait;
-  if (count) return;
-  const uint32_t rest = motion.rest;
-  if (rest < run && !(motion.mode & kEndless)) {
-    run = rest;
-    if (!run) {
-      // The rotor is still on its way: the coils go off one interval after the last step.
-      upperReached(kThink | kCoast | kEnded);
-      motion.rest = -1;
-      upperCount = 1;
-      return;
+  if (count == 0) {
+    const uint32_t rest = motion.rest;
+    if (rest < run && !(motion.mode & kEndless)) {
+      run = rest;
+      if (!run) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        upperReached(kThink | kCoast | kEnded);
+        motion.rest = -1;
+        upperCount = 1;
+        return;
+      }
     }
+    motion.rest = rest - run;
+    upperCount = run;
   }
-  motion.rest = rest - run;
-  upperCount = run;
+  if (due) upperUpdate();
 }
 
 void upperShieldInit() {
@@ -870,7 +870,6 @@ INLINE void upperStart() {
   if (before & kRunning) {
     upperTakeOver();
   } else {
-    upperStopTimer();
     upperEnergise();
     upperRunTimer(0);
     TIMSK5 = _BV(TOIE5);
@@ -915,12 +914,13 @@ int8_t upperSetSpeed(
 
 void upperTimerUpdateCheck() {
   auto &motion = near(upperMotion);
-  bool reached = false;
-  bool fault = false;
+  void (*onReached)() = nullptr;
+  void (*onFault)() = nullptr;
   {
     const Masked masked;
     const bool mine = !(motion.control & MOTOR_CTRL_IRQ_TIMING);
-    if (mine && motion.updates && (motion.mode & kRunning) && upperUntilEvent() == 0) {
+    if (mine && motion.updates && (motion.mode & kRunning) && upperUntilEvent() == 0 &&
+        upperMillisLeft() != 0) {
       upperUpdate();
     }
   }
@@ -929,19 +929,19 @@ void upperTimerUpdateCheck() {
     uint8_t status = motion.status;
     if (!(status & MOTOR_STAT_REACH_CALLED) && motion.onReached &&
         ((motion.mode & kEnded) || upperMillisLeft() == 0)) {
-      reached = true;
+      onReached = motion.onReached;
       status |= MOTOR_STAT_REACH_CALLED;
     }
     constexpr uint8_t kFault = MOTOR_STAT_FAULT | MOTOR_STAT_FAULT_CALLED;
     if ((status & kFault) == MOTOR_STAT_FAULT && motion.onFault) {
-      fault = true;
+      onFault = motion.onFault;
       status |= MOTOR_STAT_FAULT_CALLED;
       if (status & MOTOR_STAT_TIMER_DIV_ERROR) status |= MOTOR_STAT_TIMER_DIV_CALLED;
     }
     motion.status = status;
   }
-  if (reached) motion.onReached();
-  if (fault) motion.onFault();
+  if (onReached) onReached();
+  if (onFault) onFault();
 }
 
 void upperCallBackPositionReached(void (*userFunction)()) {

@@ -13,10 +13,10 @@ def plan(spec: UpdateEvents) -> Motion:
     return Motion(
         kind=spec.kind,
         watches_clock=True,
-        handler_cycles=605,
-        to_clock_cycles=58,
-        thinking_cycles=62,
+        handler_cycles=618,
+        to_clock_cycles=56,
+        thinking_cycles=60,
         limit_cycles=40,
-        masked_cycles=500,
+        masked_cycles=520,
         dumps=spec.debug,
     )
