@@ -57,15 +57,10 @@ def drive_claims(motor: str, drive: CoilDrive, faults: Faults) -> Iterable[Claim
         )
 
 
-def timing_claims(
-    motor: str, timing: TimerPlan, free: tuple[int, ...], faults: Faults
-) -> Iterable[Claim]:
+def timing_claims(motor: str, timing: TimerPlan, way_out: str, faults: Faults) -> Iterable[Claim]:
     """
-    Return what *timing* takes: its timer and vector. *free* are the timers that nobody has taken.
+    Return what *timing* takes: its timer and vector.
     """
-    way_out = "no other 16-bit timer is left on this board, so take a larger one"
-    if free:
-        way_out = f"take timer {' or '.join(str(number) for number in free)}"
     place = faults.at("timing", "timer")
     for resource in (f"timer {timing.timer.number}", _VECTOR + timing.vector):
         yield Claim(resource, f"motor {motor}", place, way_out)

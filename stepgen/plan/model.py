@@ -5,9 +5,9 @@ The plan: every number decided, nothing left for the templates to work out.
 from dataclasses import dataclass
 from fractions import Fraction
 
-from stepgen.devices import Board, Timer16
+from stepgen.devices import Board, Timer
 from stepgen.plan.coils import CoilDrive
-from stepgen.plan.instructions import Storage
+from stepgen.plan.instructions import Gate, Storage
 from stepgen.plan.isr import HotPath, Motion
 from stepgen.plan.kernels import Kernel
 from stepgen.spec import Library
@@ -34,11 +34,24 @@ class Setting:
 class TimerPlan:
     """
     The timer that paces a motor, and the interrupt vector that makes its steps.
+
+    Args:
+        kind: The spec's name of the timing.
+        timer: Its timer.
+        vector: The vector.
+        event: What raises the interrupt, in words that follow the timer's number.
+        instant: When that is, in words.
+        smallest_period_cycles: Shortest time between two steps that the timing allows.
+        largest_period_cycles: Longest time between two steps.
     """
 
     kind: str
-    timer: Timer16
+    timer: Timer
     vector: str
+    event: str
+    instant: str
+    smallest_period_cycles: int
+    largest_period_cycles: int
 
 
 @dataclass(frozen=True)
@@ -54,6 +67,7 @@ class MotorPlan:
         timing: What paces it.
         storage: Where its step interrupt keeps its state.
         handler: Where the step interrupt goes on in its rare ways, by the linker's name.
+        gate: What the timing puts before the step.
         hot_path: The step interrupt.
         steps_per_turn: Steps of its sequence in one turn of the shaft, or None.
         releases_at_rest: Whether the coils go off when it comes to rest.
@@ -67,6 +81,7 @@ class MotorPlan:
     timing: TimerPlan
     storage: Storage
     handler: str
+    gate: Gate
     hot_path: HotPath
     steps_per_turn: Fraction | None
     releases_at_rest: bool

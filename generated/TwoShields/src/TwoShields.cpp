@@ -82,8 +82,8 @@ struct ConstantMotion {
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
   __uint24 endLaps;  // after so many more laps of 32768 ms
-  Setting next;  // the next step sets the timer to this, unless its select is 0,
-  uint16_t elapsed;  // which takes so many ticks
+  Setting next;  // the next step sets the timer to this, unless its select is 0
+  uint16_t elapsed;  // the ticks that have passed by then
 };
 
 // Returns why a call of a speed function must be refused, or 0.
