@@ -99,7 +99,7 @@ def _analog_write_claims(use: Use, free: tuple[str, ...], faults: Faults) -> Ite
         timer, channel = pwm_channel(pin) or (0, "")
         # OCRnA is the TOP of a motor's timer; the other channels only lose their frequency.
         top = f"it rewrites OCR{timer}A, so that the motor would run away"
-        effect = top if channel == "A" else "its PWM would follow the motor's steps"
+        effect = top if channel == "A" else "its PWM would follow the motor's timer"
         role = f" on {pin.label} ({effect})"
         name = ANALOG_WRITE
         yield Claim(f"timer {timer}", name, faults, way_out, role, way_out, _CORE_TIMER)

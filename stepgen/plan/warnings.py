@@ -105,9 +105,10 @@ def _pwm_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
     pins = [pin for pin in plan.board.pins if pin.bit in free.values()]
     if pins:
         top = f"it rewrites OCR{timer.number}A, and the motor would run away"
+        effect = top if "A" in free else "it would follow the motor's timer"
         yield (
             f"no {ANALOG_WRITE}() on {_listed(pins, 'or')}, PWM of timer {timer.number}: "
-            f"{top if 'A' in free else 'it would follow the steps'}; take other pins for it"
+            f"{effect}; take other pins for it"
         )
 
 

@@ -28,6 +28,9 @@ KINDS = (
     "mega_stacked_shields",
     "mega_stacked_shields_variable",
     "uno_variable_speed",
+    "uno_servo_beside",
+    "uno_servo_beside_variable",
+    "uno_two_motors",
 )
 # Not in the campaign as yet: update events with the ring kernel, on an Uno as well, set the timer
 # up to 17 cycles ahead where prescaler 8 gives way to 1, and 16 are allowed (seed 20260102).

@@ -62,12 +62,14 @@ def offer(board: Board, free: tuple[int, ...]) -> str:
     return f"`timing: {{kind: compare, timer: {numbers[0]}}}` or " if numbers else ""
 
 
-def way_out(board: Board, _free: tuple[int, ...]) -> str:
+def way_out(board: Board, free: tuple[int, ...]) -> str:
     """
-    Return what a motor can take in place of its timer: no other can do the same.
+    Return what a motor can take in place of its timer: one of those that are *free* and wide.
     """
-    names = " or ".join(str(timer.number) for timer in board.mcu.timers16)
-    return f"compare has no other timer; take `timing: fast-pwm` on timer {names}"
+    numbers = [str(number) for number in free if board.mcu.timer16(number)]
+    if numbers:
+        return f"take `timing: fast-pwm` on timer {' or '.join(numbers)}"
+    return "take a larger board, since no other timer is left on this one"
 
 
 def gate(timer: Timer8, storage: Storage, mcu: Mcu) -> Gate:
