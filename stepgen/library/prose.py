@@ -57,7 +57,7 @@ def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
         *rows,
         "",
         *comment_lines(port_rule(motor, board)),
-        *comment_lines(taken),
+        *comment_lines(" ".join(filter(None, (taken, motor.timing.rule)))),
     )
 
 
@@ -156,7 +156,7 @@ def takes(plan: Plan) -> tuple[str, ...]:
     """
     rows = [
         f"Timer {motor.timing.timer.number} and `{motor.timing.vector}`: no `analogWrite()` on "
-        f"{_pwm(motor, plan.board)}."
+        f"{_pwm(motor, plan.board)}. {motor.timing.rule}".rstrip()
         for motor in plan.motors
     ]
     rows.append(sharing_rule(plan))

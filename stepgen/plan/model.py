@@ -43,6 +43,7 @@ class TimerPlan:
         instant: When that is, in words.
         smallest_period_cycles: Shortest time between two steps that the timing allows.
         largest_period_cycles: Longest time between two steps.
+        rule: What the sketch has to mind beside the timer's pins, in whole sentences, or "".
     """
 
     kind: str
@@ -52,6 +53,7 @@ class TimerPlan:
     instant: str
     smallest_period_cycles: int
     largest_period_cycles: int
+    rule: str = ""
 
 
 @dataclass(frozen=True)
@@ -86,21 +88,6 @@ class MotorPlan:
     steps_per_turn: Fraction | None
     releases_at_rest: bool
     owns_ports: bool
-
-    @property
-    def elapsed_cycles(self) -> tuple[int, ...]:
-        """
-        Return the cycles from a due step until the boundary handler has set the timer anew.
-
-        Then the same where the handler looked at the clock and made the step itself; then both
-        with a limit in milliseconds, for a motion that takes longer with one.
-        """
-        handler, motion = self.kernel.handler, self.motion
-        usual = self.hot_path.boundary_entry_cycles + handler.to_clock + motion.to_clock_cycles
-        woken = self.hot_path.think_entry_cycles + handler.to_clock_thinking
-        both = (usual, woken + motion.thinking_cycles)
-        limited = tuple(cycles + motion.limit_cycles for cycles in both)
-        return both + limited if motion.limit_cycles else both
 
     @property
     def isr_bound_cycles(self) -> int:

@@ -107,7 +107,7 @@ MUTANTS = (
     ),
     Mutant(
         "a new TOP that loses a step count when the prescaler changes",
-        "motions/update_events.j2",
+        "timings/fast_pwm.j2",
         "motion.rest += ahead;",
         "motion.rest += ahead - 1;",
         spec="uno_variable_speed",

@@ -71,7 +71,10 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 //
 // The sketch may change other bits of ports B and D with digitalWrite(), with single-bit sbi/cbi,
 // or inside ATOMIC_BLOCK.
-// Timer 2 belongs to the motor: no analogWrite() on D11 or D3.
+// Timer 2 belongs to the motor: no analogWrite() on D11 or D3. There can be no tone(), which needs
+// timer 2 too. Its interrupt may be held up for 970 clocks in all, by calls of the library, other
+// interrupts and stretches with interrupts off; after a longer one a step and all that follow it
+// come 2048 clocks late.
 
 // Steps for whole turns: 200 in each.
 constexpr uint32_t leftStepsForTurns(uint16_t turns) {

@@ -5,7 +5,7 @@ Fast PWM: registers, mode bits, and the ticks that pass until a step has set the
 from dataclasses import dataclass
 
 from stepgen.plan.model import MotorPlan
-from stepgen.plan.timings.fast_pwm import PRESCALERS
+from stepgen.plan.timings.fast_pwm import PRESCALERS, elapsed_cycles
 
 _BYTE_MAX = 0xFF
 
@@ -44,7 +44,7 @@ def view(motor: MotorPlan) -> FastPwmView:
     """
     timer = motor.timing.timer
     n = timer.number
-    fits = max(motor.elapsed_cycles) <= _BYTE_MAX
+    elapsed = elapsed_cycles(motor)
     changes = motor.motion.watches_clock
     return FastPwmView(
         number=n,
@@ -61,9 +61,9 @@ def view(motor: MotorPlan) -> FastPwmView:
         mode_b=f"_BV(WGM{n}3) | _BV(WGM{n}2)",
         linkage="SHARED" if changes else "INLINE",
         object=f"near({motor.name}Motion)" if changes else f"{motor.name}Motion",
-        elapsed_type="uint8_t" if fits else "uint16_t",
-        elapsed_read="pgm_read_byte" if fits else "pgm_read_word",
-        elapsed_ticks=tuple(_ticks(cycles) for cycles in motor.elapsed_cycles),
+        elapsed_type="uint8_t" if max(elapsed) <= _BYTE_MAX else "uint16_t",
+        elapsed_read="pgm_read_byte" if max(elapsed) <= _BYTE_MAX else "pgm_read_word",
+        elapsed_ticks=tuple(_ticks(cycles) for cycles in elapsed),
         elapsed_woken=len(PRESCALERS),
         elapsed_limited=2 * len(PRESCALERS),
         elapsed_note="; then both with a limit in\n// milliseconds" if changes else "",

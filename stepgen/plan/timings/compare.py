@@ -51,6 +51,12 @@ def plan(spec: Compare, board: Board, free: tuple[int, ...], faults: Faults) -> 
         instant="the match",
         smallest_period_cycles=SMALLEST_PERIOD_CYCLES,
         largest_period_cycles=LARGEST_PERIOD_CYCLES,
+        rule=(
+            f"There can be no tone(), which needs timer {timer.number} too. Its interrupt may be "
+            f"held up for {LONGEST_WAIT_CYCLES} clocks in all, by calls of the library, other "
+            "interrupts and stretches with interrupts off; after a longer one a step and all that "
+            f"follow it come {LAP_CYCLES} clocks late."
+        ),
     )
 
 

@@ -7,7 +7,7 @@ Source: ATmega328P datasheet, 16-bit Timer/Counter1, Fast PWM mode; system 1, ch
 from stepgen.devices import Board, Mcu, Timer16
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Gate, Storage
-from stepgen.plan.model import Setting, TimerPlan
+from stepgen.plan.model import MotorPlan, Setting, TimerPlan
 from stepgen.plan.timings import compare
 from stepgen.spec.timings.fast_pwm import FastPwm
 
@@ -102,3 +102,18 @@ def choose_setting(period_cycles: int) -> Setting:
         raise ValueError(f"{period_cycles} cycles are not within 2 to {LARGEST_PERIOD_CYCLES}")
     prescaler = next(p for p in PRESCALERS if period_cycles // p <= LARGEST_TICKS)
     return Setting(prescaler, period_cycles // prescaler - 1)
+
+
+def elapsed_cycles(motor: MotorPlan) -> tuple[int, ...]:
+    """
+    Return the cycles from a due step until the boundary handler has set the timer anew.
+
+    Then the same where the handler looked at the clock and made the step itself; then both
+    with a limit in milliseconds, for a motion that takes longer with one.
+    """
+    handler, motion = motor.kernel.handler, motor.motion
+    usual = motor.hot_path.boundary_entry_cycles + handler.to_clock + motion.to_clock_cycles
+    woken = motor.hot_path.think_entry_cycles + handler.to_clock_thinking
+    both = (usual, woken + motion.thinking_cycles)
+    limited = tuple(cycles + motion.limit_cycles for cycles in both)
+    return both + limited if motion.limit_cycles else both
