@@ -91,9 +91,9 @@ def _minimum_period_cycles(motors: tuple[MotorPlan, ...], faults: Faults) -> int
         period = shortest_period_cycles(motor.timing, own, interrupts, masked)
         if period is None:
             _at(faults, motor.name).at("timing").report(
-                f"the other motors and calls of the library could keep timer "
+                f"step interrupts and calls of this library could keep timer "
                 f"{motor.timing.timer.number} waiting too long for {motor.timing.kind}; take "
-                "`timing: fast-pwm`, or fewer motors"
+                "`timing: fast-pwm`, `motion: constant`, pins on fewer ports, or fewer motors"
             )
         shortest = max(shortest, period or 0)
     return shortest

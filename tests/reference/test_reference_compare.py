@@ -12,6 +12,7 @@ from stepgen.reference.facts import MotorFacts
 from stepgen.reference.prediction import predict
 from stepgen.reference.sequences import coils_off, phases
 from stepgen.reference.stimuli import ClockOn, SetSpeed, Stimulus
+from stepgen.reference.timer import through_running_setting
 
 FACTS = MotorFacts(
     phases("four-wire", "full"), coils_off("four-wire"), 2048, "hold", timing="compare"
@@ -59,3 +60,12 @@ def test_a_change_of_speed_begins_with_the_next_step() -> None:
     ]
 
     assert _steps(stimuli, 661_000) == [21_000, 41_000, 61_000, 361_000, 661_000]
+
+
+@pytest.mark.parametrize("virtual_cycles", [0, 7, 65_535 * 1024 + 1])
+def test_a_period_out_of_range_has_no_setting(virtual_cycles: int) -> None:
+    """
+    At least one tick, and at most what fast PWM can do.
+    """
+    with pytest.raises(ValueError, match="not within 8 to 67107840"):
+        through_running_setting(virtual_cycles)
