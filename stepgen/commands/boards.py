@@ -13,6 +13,7 @@ from stepgen.devices import (
     Board,
     LibraryClaims,
     PortBit,
+    Timer,
     Timer16,
     find_board,
     library_claims,
@@ -49,8 +50,8 @@ def boards(
             ("Pins", ("Pin", "Port bit", "Also"), _pin_rows(found)),
             ("Ports", ("Port", "PIN", "DDR", "PORT", "Header pins"), _port_rows(found)),
             (
-                "16-bit timers",
-                ("Timer", "Compare pins", "Capture", "Vectors", "Also used by"),
+                "Timers",
+                ("Timer", "Bits", "Compare pins", "Capture", "Vectors", "Also used by"),
                 _timer_rows(found),
             ),
             (
@@ -96,11 +97,12 @@ def _port_rows(board: Board) -> Iterable[Row]:
 
 def _timer_rows(board: Board) -> Iterable[Row]:
     others = _claims(board)
-    for timer in board.mcu.timers16:
+    for timer in board.mcu.timers:
         takers = [claims for claims in others if timer.number in claims.timers]
-        capture = timer.capture_input
+        capture = timer.capture_input if isinstance(timer, Timer16) else None
         yield (
             str(timer.number),
+            str(8 * timer.counter_bytes),
             "\n".join(f"{channel} {_pin(board, bit)}" for channel, bit in timer.outputs),
             _pin(board, capture) if capture else "",
             "\n".join(_vectors(timer)),
@@ -108,8 +110,9 @@ def _timer_rows(board: Board) -> Iterable[Row]:
         )
 
 
-def _vectors(timer: Timer16) -> Iterable[str]:
-    vectors = (timer.ovf, timer.compa, timer.compb, timer.compc, timer.capt)
+def _vectors(timer: Timer) -> Iterable[str]:
+    more = (timer.compc, timer.capt) if isinstance(timer, Timer16) else ()
+    vectors = (timer.ovf, timer.compa, timer.compb, *more)
     return (vector.name for vector in vectors if vector)
 
 

@@ -108,6 +108,11 @@ def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
     yield ("steps per turn", _turn(motor))
     yield ("at rest", "coils off" if motor.releases_at_rest else "coils hold")
     yield ("step interrupt", f"{path.usual_cycles} cycles, response to RETI")
+    if path.lap_cycles:
+        yield (
+            "between steps",
+            f"{path.lap_cycles[0]} cycles a lap, {path.lap_cycles[-1]} the last",
+        )
     yield ("at a boundary", f"at most {motor.isr_bound_cycles} cycles")
     yield (
         "until the edge",

@@ -9,7 +9,18 @@ from stepgen.devices.libraries import (
     SketchLibrary,
     library_claims,
 )
-from stepgen.devices.model import Board, Mcu, Pin, Port, PortBit, Register, Timer16, Vector
+from stepgen.devices.model import (
+    Board,
+    Mcu,
+    Pin,
+    Port,
+    PortBit,
+    Register,
+    Timer,
+    Timer8,
+    Timer16,
+    Vector,
+)
 
 __all__ = [
     "SKETCH_LIBRARIES",
@@ -21,6 +32,8 @@ __all__ = [
     "PortBit",
     "Register",
     "SketchLibrary",
+    "Timer",
+    "Timer8",
     "Timer16",
     "Vector",
     "boards",

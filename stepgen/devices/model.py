@@ -3,6 +3,7 @@ The types of the device layer: facts that datasheets and board drawings state.
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 _IO_START = 0x20
 _IO_END = 0x60
@@ -126,6 +127,47 @@ class Timer16:
     outputs: tuple[tuple[str, PortBit], ...]
     capture_input: PortBit | None
 
+    prescalers: ClassVar[tuple[int, ...]] = (1, 8, 64, 256, 1024)
+    """By clock select, from 1 on."""
+
+    counter_bytes: ClassVar[int] = 2
+
+
+@dataclass(frozen=True)
+class Timer8:
+    """
+    The 8-bit timer 2, which has a prescaler of its own and counts I/O clocks unless ASSR says else.
+
+    Args:
+        number: The n of TCCRnA.
+        tccra: Control register A; tccrb likewise.
+        tcnt: Counter; ocra and ocrb: compare registers.
+        timsk: Interrupt mask register; tifr: interrupt flag register.
+        compa: Compare match A vector; compb likewise; ovf: overflow vector.
+        outputs: Channel and pin of each compare output, such as ``("A", PB3)``.
+    """
+
+    number: int
+    tccra: Register
+    tccrb: Register
+    tcnt: Register
+    ocra: Register
+    ocrb: Register
+    timsk: Register
+    tifr: Register
+    compa: Vector
+    compb: Vector
+    ovf: Vector
+    outputs: tuple[tuple[str, PortBit], ...]
+
+    prescalers: ClassVar[tuple[int, ...]] = (1, 8, 32, 64, 128, 256, 1024)
+    """By clock select, from 1 on."""
+
+    counter_bytes: ClassVar[int] = 1
+
+
+Timer = Timer16 | Timer8
+
 
 @dataclass(frozen=True)
 class Mcu:
@@ -141,6 +183,7 @@ class Mcu:
         response_cycles: Least from interrupt to vector: 4, or 5 where the PC has 22 bits.
         ports: All ports, by letter.
         timers16: All 16-bit timers, by number.
+        timers8: The 8-bit timers that the core does not count its milliseconds with.
         vectors: All but reset, by number.
         gpiors: General purpose I/O registers 0 to 2; sreg: status; clkpr: clock prescaler.
     """
@@ -154,10 +197,18 @@ class Mcu:
     response_cycles: int
     ports: tuple[Port, ...]
     timers16: tuple[Timer16, ...]
+    timers8: tuple[Timer8, ...]
     vectors: tuple[Vector, ...]
     gpiors: tuple[Register, Register, Register]
     sreg: Register
     clkpr: Register
+
+    @property
+    def timers(self) -> tuple[Timer, ...]:
+        """
+        Return all timers but the core's, the 16-bit ones first.
+        """
+        return (*self.timers16, *self.timers8)
 
     def port(self, letter: str) -> Port:
         """
@@ -176,6 +227,12 @@ class Mcu:
         Return the 16-bit timer *number*, or None where that timer is not there or has 8 bits.
         """
         return next((timer for timer in self.timers16 if timer.number == number), None)
+
+    def timer8(self, number: int) -> Timer8 | None:
+        """
+        Return the 8-bit timer *number*, or None where it is not there, not free or has 16 bits.
+        """
+        return next((timer for timer in self.timers8 if timer.number == number), None)
 
     def vector(self, name: str) -> Vector:
         """

@@ -5,7 +5,7 @@ Short ways to write a datasheet's tables down, so that a person can check them a
 import re
 from collections.abc import Mapping, Sequence
 
-from stepgen.devices.model import Pin, Port, PortBit, Register, Timer16, Vector
+from stepgen.devices.model import Pin, Port, PortBit, Register, Timer8, Timer16, Vector
 
 _PORT_BIT = re.compile(r"P([A-L])([0-7])")
 
@@ -82,6 +82,31 @@ def timer16(
         ovf=by_name[f"TIMER{number}_OVF_vect"],
         outputs=tuple((channel, port_bit(name)) for channel, name in outputs.items()),
         capture_input=port_bit(capture_input),
+    )
+
+
+def timer2(table: Sequence[Vector], outputs: Mapping[str, str]) -> Timer8:
+    """
+    Return timer 2, whose registers lie alike on every classic ATmega.
+
+    Args:
+        table: The chip's vectors.
+        outputs: Pin of each compare channel, such as ``{"A": "PB3", "B": "PD3"}``.
+    """
+    by_name = {vector.name: vector for vector in table}
+    return Timer8(
+        number=2,
+        tccra=Register("TCCR2A", 0xB0),
+        tccrb=Register("TCCR2B", 0xB1),
+        tcnt=Register("TCNT2", 0xB2),
+        ocra=Register("OCR2A", 0xB3),
+        ocrb=Register("OCR2B", 0xB4),
+        timsk=Register("TIMSK2", 0x70),
+        tifr=Register("TIFR2", 0x37),
+        compa=by_name["TIMER2_COMPA_vect"],
+        compb=by_name["TIMER2_COMPB_vect"],
+        ovf=by_name["TIMER2_OVF_vect"],
+        outputs=tuple((channel, port_bit(name)) for channel, name in outputs.items()),
     )
 
 

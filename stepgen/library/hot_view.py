@@ -4,6 +4,7 @@ The view of a step interrupt: instructions and operands as finished assembler te
 
 from dataclasses import dataclass
 
+from stepgen.devices import Register
 from stepgen.plan.instructions import Instruction, Place
 from stepgen.plan.kernels import Ring
 from stepgen.plan.model import MotorPlan
@@ -49,6 +50,10 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
             f'[wake] "i"(&{motor.name}Motion.wake)',
             '[millis] "i"(&timer0_millis)',
         ]
+    for name, register in motor.gate.registers:
+        operands.append(_register_operand(name, register))
+    for name, member in motor.gate.fields:
+        operands.append(f'[{name}] "i"(&{motor.name}Motion.{member})')
     kernel = motor.kernel
     if isinstance(kernel, Ring):
         operands.append(f'[ring] "i"({motor.name}Ring)')
@@ -56,8 +61,7 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
     else:
         registers = [kernel.port.pin]
     for index, register in enumerate(registers):
-        access = '"I"(_SFR_IO_ADDR' if register.in_io else '"n"(_SFR_MEM_ADDR'
-        operands.append(f"[port{index}] {access}({register.name}))")
+        operands.append(_register_operand(f"port{index}", register))
     *others, last = operands
     return (*(Line(text, ",") for text in others), Line(last, ""))
 
@@ -67,6 +71,11 @@ def _line(instruction: Instruction) -> Line:
     text = f'"{label:<3}{instruction.text:<{_LINE_WIDTH}}\\n"'
     cycles = str(instruction.cycles) if instruction.cycles else " "
     return Line(text, f"  // {cycles}  {instruction.note}".rstrip())
+
+
+def _register_operand(name: str, register: Register) -> str:
+    access = '"I"(_SFR_IO_ADDR' if register.in_io else '"n"(_SFR_MEM_ADDR'
+    return f"[{name}] {access}({register.name}))"
 
 
 def _place_operand(name: str, place: Place) -> str:

@@ -10,30 +10,10 @@ from stepgen.library.kernel_view import Bits, KernelView, bit_groups, kernel_vie
 from stepgen.library.prose import isr_contract, release_comment, rest_comment, summary, wiring
 from stepgen.library.sharing import Need, need_of, sharing_note
 from stepgen.library.text import comment_lines
+from stepgen.library.timings import TimerView, timer_view
 from stepgen.plan.model import MotorPlan, Plan
-from stepgen.plan.timings.fast_pwm import PRESCALERS
 
-_BYTE_MAX = 0xFF
 _EXAMPLE_SPEED_SPS = 200  # slow enough for any motor, a 28BYJ-48 included
-
-
-@dataclass(frozen=True)
-class TimerView:
-    """
-    Names of a timer's registers and bits, and the two values that select its mode.
-    """
-
-    number: int
-    tccra: str
-    tccrb: str
-    tcnt: str
-    ocra: str
-    timsk: str
-    tifr: str
-    tov: str
-    toie: str
-    mode_a: str
-    mode_b: str
 
 
 @dataclass(frozen=True)
@@ -88,14 +68,6 @@ class MotorView:
     released: tuple[Bits, ...]
     low_at_start: tuple[Bits, ...]
     outputs: tuple[Bits, ...]
-    linkage: str
-    object: str
-    elapsed_type: str
-    elapsed_read: str
-    elapsed_ticks: tuple[str, ...]
-    elapsed_woken: int
-    elapsed_limited: int
-    elapsed_note: str
     isr_contract: tuple[str, ...]
     usual: tuple[Line, ...]
     clock: tuple[Line, ...]
@@ -114,7 +86,6 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
     storage, board, drive = motor.storage, plan.board, motor.drive
     mcu, need = board.mcu, need_of(motor, plan)
     lows = [wire for wire in drive.every_wire if not (need and wire in drive.enables)]
-    fits = max(motor.elapsed_cycles) <= _BYTE_MAX
     return MotorView(
         name=motor.name,
         title=motor.name[0].upper() + motor.name[1:],
@@ -129,7 +100,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         has_updates=motor.motion.watches_clock,
         dump_name=dump_name(motor) if motor.motion.dumps else "",
         kernel=kernel_view(motor.kernel),
-        timer=_timer_view(motor),
+        timer=timer_view(motor),
         vector=motor.timing.vector,
         handler=motor.handler,
         count=storage.count.name,
@@ -141,16 +112,6 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         released=bit_groups(drive.released, mcu),
         low_at_start=bit_groups(tuple(lows), mcu),
         outputs=bit_groups(drive.every_wire, mcu),
-        linkage="SHARED" if motor.motion.watches_clock else "INLINE",
-        object=f"near({motor.name}Motion)" if motor.motion.watches_clock else f"{motor.name}Motion",
-        elapsed_type="uint8_t" if fits else "uint16_t",
-        elapsed_read="pgm_read_byte" if fits else "pgm_read_word",
-        elapsed_ticks=tuple(_ticks(cycles) for cycles in motor.elapsed_cycles),
-        elapsed_woken=len(PRESCALERS),
-        elapsed_limited=2 * len(PRESCALERS),
-        elapsed_note="; then both with a limit in\n// milliseconds"
-        if motor.motion.watches_clock
-        else "",
         isr_contract=isr_contract(motor),
         usual=instruction_lines(motor.hot_path.usual),
         clock=instruction_lines(motor.hot_path.clock),
@@ -163,13 +124,6 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",
         turn_text="turn" if motor.steps_per_turn else "way of 200 steps",
     )
-
-
-def _ticks(cycles: int) -> str:
-    """
-    Return *cycles* in whole ticks of each prescaler, as entries of a table.
-    """
-    return " ".join(f"{cycles // prescaler}," for prescaler in PRESCALERS)
 
 
 def module_name(kind: str) -> str:
@@ -189,24 +143,6 @@ def _turns(motor: MotorPlan) -> Turns | None:
     return Turns(
         f"static_cast<uint32_t>((turns * {steps.numerator}ULL + {half}) / {steps.denominator})",
         f"Steps for whole turns, rounded: {float(steps):.6g} in each.",
-    )
-
-
-def _timer_view(motor: MotorPlan) -> TimerView:
-    timer = motor.timing.timer
-    n = timer.number
-    return TimerView(
-        number=n,
-        tccra=timer.tccra.name,
-        tccrb=timer.tccrb.name,
-        tcnt=timer.tcnt.name,
-        ocra=timer.ocra.name,
-        timsk=timer.timsk.name,
-        tifr=timer.tifr.name,
-        tov=f"TOV{n}",
-        toie=f"TOIE{n}",
-        mode_a=f"_BV(WGM{n}1) | _BV(WGM{n}0)",
-        mode_b=f"_BV(WGM{n}3) | _BV(WGM{n}2)",
     )
 
 

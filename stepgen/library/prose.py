@@ -57,7 +57,7 @@ def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
         *rows,
         "",
         *comment_lines(port_rule(motor, board)),
-        *comment_lines(taken),
+        *comment_lines(" ".join(filter(None, (taken, motor.timing.rule)))),
     )
 
 
@@ -134,12 +134,19 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
     """
     path = motor.hot_path
     ports = listed(sorted({wire.pin.bit.port for wire in motor.drive.wires}))
+    timing = motor.timing
+    laps = "".join(
+        f" Between two steps it counts laps of the timer, {cycles[0]} cycles each, and "
+        f"{cycles[-1]} for the last of them."
+        for cycles in (path.lap_cycles,)
+        if cycles
+    )
     return comment_lines(
-        f"Timer {motor.timing.timer.number} overflow: one step, {path.usual_cycles} cycles from "
+        f"Timer {timing.timer.number} {timing.event}: one step, {path.usual_cycles} cycles from "
         f"the interrupt's response to RETI; at most {motor.isr_bound_cycles} when it goes on in "
-        f"{motor.handler}. The wires change {path.edge_cycles} cycles after the timer wraps "
-        f"({path.boundary_edge_cycles} before a boundary). It writes port {ports} and nothing "
-        "else that the sketch can see. Behind each instruction stand its cycles."
+        f"{motor.handler}. The wires change {path.edge_cycles} cycles after {timing.instant} "
+        f"({path.boundary_edge_cycles} before a boundary).{laps} It writes port {ports} and "
+        "nothing else that the sketch can see. Behind each instruction stand its cycles."
     )
 
 
@@ -149,7 +156,7 @@ def takes(plan: Plan) -> tuple[str, ...]:
     """
     rows = [
         f"Timer {motor.timing.timer.number} and `{motor.timing.vector}`: no `analogWrite()` on "
-        f"{_pwm(motor, plan.board)}."
+        f"{_pwm(motor, plan.board)}. {motor.timing.rule}".rstrip()
         for motor in plan.motors
     ]
     rows.append(sharing_rule(plan))

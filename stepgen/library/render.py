@@ -10,7 +10,7 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from jinja2.ext import Extension
 
-from stepgen.library.text import block, c_comment, c_string, properties_value, tidy
+from stepgen.library.text import block, c_comment, c_string, more, properties_value, tidy
 from stepgen.library.view import LibraryView, make_view
 from stepgen.plan.model import Plan
 
@@ -70,7 +70,11 @@ def environment(templates: Path | None = None) -> Environment:
         autoescape=False,  # noqa: S701 - C++ is no HTML; text of a spec goes through filters
     )
     made.filters.update(
-        block=block, c_comment=c_comment, c_string=c_string, properties_value=properties_value
+        block=block,
+        more=more,
+        c_comment=c_comment,
+        c_string=c_string,
+        properties_value=properties_value,
     )
     return made
 

@@ -40,6 +40,16 @@ def block(text: str, width: int = 0) -> str:
     return indent(text.rstrip("\n"), " " * width)
 
 
+def more(text: str, width: int = 0) -> str:
+    """
+    Return *text* as `block` does, but behind a line end of its own; nothing if it is empty.
+
+    For what may be empty: written as ``{{- text | more }}``, it then leaves no empty line.
+    """
+    lines = block(text, width)
+    return f"\n{lines}" if lines else ""
+
+
 def comment_lines(text: str) -> tuple[str, ...]:
     """
     Return *text* as lines of a ``//`` comment, each within the line width.

@@ -14,11 +14,22 @@ from stepgen.library.api_view import (
     status_bits,
 )
 from stepgen.library.hot_view import THINK_BIT
-from stepgen.library.motor_view import MotorView, Named, module_name, motor_view
+from stepgen.library.motor_view import MotorView, Named, motor_view
 from stepgen.library.prose import paragraph, takes, title
 from stepgen.library.sharing import needs_comment
 from stepgen.library.text import c_comment, frequency
 from stepgen.plan.model import Plan
+
+
+@dataclass(frozen=True)
+class MotionStruct:
+    """
+    The struct of a motion, with the fields of a timing; its name begins with *prefix*.
+    """
+
+    motion_name: str
+    timing_name: str
+    prefix: str
 
 
 @dataclass(frozen=True)
@@ -49,9 +60,10 @@ class LibraryView:
     codes: tuple[Definition, ...]
     constants: tuple[Named, ...]
     motion_names: tuple[str, ...]
+    motion_structs: tuple[MotionStruct, ...]
     think_bit: int
     dumps: bool
-    timing_name: str
+    timing_names: tuple[str, ...]
     needs_comment: tuple[str, ...]
     motors: tuple[MotorView, ...]
     keywords: tuple[Named, ...]
@@ -91,15 +103,21 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         codes=codes(plan),
         constants=_constants(plan),
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
+        motion_structs=_motion_structs(motors),
         think_bit=THINK_BIT,
         dumps=any(motor.motion.dumps for motor in plan.motors),
-        timing_name=module_name(plan.motors[0].timing.kind),
+        timing_names=tuple(sorted({motor.timing_name for motor in motors})),
         needs_comment=needs_comment(plan),
         motors=motors,
         keywords=_keywords(plan),
         names=names,
         takes=takes(plan),
     )
+
+
+def _motion_structs(motors: tuple[MotorView, ...]) -> tuple[MotionStruct, ...]:
+    pairs = {(m.motion_name, m.timing_name): m.timer.struct_prefix for m in motors}
+    return tuple(MotionStruct(*pair, prefix) for pair, prefix in sorted(pairs.items()))
 
 
 def _claims(plan: Plan) -> tuple[Named, ...]:

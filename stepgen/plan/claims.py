@@ -57,15 +57,10 @@ def drive_claims(motor: str, drive: CoilDrive, faults: Faults) -> Iterable[Claim
         )
 
 
-def timing_claims(
-    motor: str, timing: TimerPlan, free: tuple[int, ...], faults: Faults
-) -> Iterable[Claim]:
+def timing_claims(motor: str, timing: TimerPlan, way_out: str, faults: Faults) -> Iterable[Claim]:
     """
-    Return what *timing* takes: its timer and vector. *free* are the timers that nobody has taken.
+    Return what *timing* takes: its timer and vector.
     """
-    way_out = "no other 16-bit timer is left on this board, so take a larger one"
-    if free:
-        way_out = f"take timer {' or '.join(str(number) for number in free)}"
     place = faults.at("timing", "timer")
     for resource in (f"timer {timing.timer.number}", _VECTOR + timing.vector):
         yield Claim(resource, f"motor {motor}", place, way_out)
@@ -104,7 +99,7 @@ def _analog_write_claims(use: Use, free: tuple[str, ...], faults: Faults) -> Ite
         timer, channel = pwm_channel(pin) or (0, "")
         # OCRnA is the TOP of a motor's timer; the other channels only lose their frequency.
         top = f"it rewrites OCR{timer}A, so that the motor would run away"
-        effect = top if channel == "A" else "its PWM would follow the motor's steps"
+        effect = top if channel == "A" else "its PWM would follow the motor's timer"
         role = f" on {pin.label} ({effect})"
         name = ANALOG_WRITE
         yield Claim(f"timer {timer}", name, faults, way_out, role, way_out, _CORE_TIMER)

@@ -30,6 +30,26 @@ class Instruction:
 
 
 @dataclass(frozen=True)
+class Gate:
+    """
+    What a timing puts before the step: it lets through those interrupts at which a step is due.
+
+    Args:
+        instructions: It may use r24, and SREG is saved; those that are no step end in it.
+        step_cycles: The way through it to the step.
+        lap_cycles: The ways that end in it, RETI included: the usual one, then the longest.
+        registers: The registers that its instructions name.
+        fields: The members of the motor's motion that they name.
+    """
+
+    instructions: tuple[Instruction, ...] = ()
+    step_cycles: int = 0
+    lap_cycles: tuple[int, ...] = ()
+    registers: tuple[tuple[str, Register], ...] = ()
+    fields: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True)
 class Place:
     """
     Where a byte of a motor's state lives: in a GPIOR, or in RAM under a variable's name.

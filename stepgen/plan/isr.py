@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from stepgen.devices import Mcu
-from stepgen.plan.instructions import Instruction, Storage
+from stepgen.plan.instructions import Gate, Instruction, Storage
 from stepgen.plan.kernels import Kernel
 from stepgen.plan.step_code import saved_registers, step_code
 
@@ -31,6 +31,8 @@ class Motion:
         limit_cycles: How much later still with a limit in milliseconds.
         masked_cycles: Longest stretch of a call of the library with interrupts off.
         dumps: Whether the library can print the state of the motion.
+        setting_cycles: What of *handler_cycles* goes into setting the timer anew.
+        masked_setting_cycles: The same of *masked_cycles*.
     """
 
     kind: str
@@ -41,6 +43,8 @@ class Motion:
     limit_cycles: int
     masked_cycles: int
     dumps: bool = False
+    setting_cycles: int = 0
+    masked_setting_cycles: int = 0
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,8 @@ class HotPath:
         usual: From the vector to RETI, when nothing but a step is due.
         clock: What follows label 3: a look at the clock; empty where no motion needs one.
         boundary: What follows label 1: the last step of a run, then the boundary handler.
-        usual_cycles: Response, vector, all of *usual*.
+        usual_cycles: Response, vector, all of *usual* on the way of a step.
+        lap_cycles: The same of interrupts without a step, in order of length; empty where none is.
         clock_cycles: The same with a look at the clock.
         edge_cycles: From the timer's flag to the end of the last port write, on the usual way.
         boundary_edge_cycles: The same on the boundary's way.
@@ -64,6 +69,7 @@ class HotPath:
     clock: tuple[Instruction, ...]
     boundary: tuple[Instruction, ...]
     usual_cycles: int
+    lap_cycles: tuple[int, ...]
     clock_cycles: int
     edge_cycles: int
     boundary_edge_cycles: int
@@ -72,13 +78,20 @@ class HotPath:
 
 
 def compose(
-    kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, *, watches_clock: bool = False
+    kernel: Kernel,
+    storage: Storage,
+    mcu: Mcu,
+    handler: str,
+    gate: Gate,
+    *,
+    watches_clock: bool = False,
 ) -> HotPath:
     """
     Return the step interrupt of *kernel*; its rare ways go on in the function *handler*.
 
-    With *watches_clock* each step first looks whether the clock has come to the motor's next
-    moment; the handler then goes before the step, and the count has not been touched.
+    The *gate* of the timing comes first. With *watches_clock* each step then looks whether the
+    clock has come to the motor's next moment; the handler then goes before the step, and the count
+    has not been touched.
     """
     saved = saved_registers(kernel)
     entry = (
@@ -116,18 +129,21 @@ def compose(
     if watches_clock:
         count = (replace(count[0], label="4"), *count[1:])
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
-    until_count = arrival + _cycles(entry + look)
+    until_gate = arrival + _cycles(entry)
+    until_count = until_gate + gate.step_cycles + _cycles(look)
     until_step = until_count + _cycles(count)
     until_rare_step = until_step + 1 + _cycles(think)
-    usual = (*entry, *look, *count, *step, *leave, Instruction("reti", mcu.response_cycles))
+    onward = (*look, *count, *step, *leave, Instruction("reti", mcu.response_cycles))
+    usual_cycles = until_gate + gate.step_cycles + _cycles(onward)
     looked = _CLOCK_TAKEN_CYCLES + _cycles(clock) if watches_clock else 0
     due = until_count + looked if watches_clock else until_rare_step + 1
     return HotPath(
-        usual=usual,
+        usual=(*entry, *gate.instructions, *onward),
         clock=clock,
         boundary=(*think, *step, *out),
-        usual_cycles=arrival + _cycles(usual),
-        clock_cycles=arrival + _cycles(usual) + looked,
+        usual_cycles=usual_cycles,
+        lap_cycles=tuple(until_gate + cycles for cycles in gate.lap_cycles),
+        clock_cycles=usual_cycles + looked,
         edge_cycles=until_step + _cycles_to_edge(step),
         boundary_edge_cycles=until_rare_step + looked + _cycles_to_edge(step),
         boundary_entry_cycles=until_rare_step + looked + _cycles(step + out),

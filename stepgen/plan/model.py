@@ -5,9 +5,9 @@ The plan: every number decided, nothing left for the templates to work out.
 from dataclasses import dataclass
 from fractions import Fraction
 
-from stepgen.devices import Board, Timer16
+from stepgen.devices import Board, Timer
 from stepgen.plan.coils import CoilDrive
-from stepgen.plan.instructions import Storage
+from stepgen.plan.instructions import Gate, Storage
 from stepgen.plan.isr import HotPath, Motion
 from stepgen.plan.kernels import Kernel
 from stepgen.spec import Library
@@ -34,11 +34,28 @@ class Setting:
 class TimerPlan:
     """
     The timer that paces a motor, and the interrupt vector that makes its steps.
+
+    Args:
+        kind: The spec's name of the timing.
+        timer: Its timer.
+        vector: The vector.
+        event: What raises the interrupt, in words that follow the timer's number.
+        instant: When that is, in words.
+        smallest_period_cycles: Shortest time between two steps that the timing allows.
+        largest_period_cycles: Longest time between two steps.
+        rule: What the sketch has to mind beside the timer's pins, in whole sentences, or "".
+        is_set_anew: Whether a change of speed can mean that the timer is set anew.
     """
 
     kind: str
-    timer: Timer16
+    timer: Timer
     vector: str
+    event: str
+    instant: str
+    smallest_period_cycles: int
+    largest_period_cycles: int
+    rule: str = ""
+    is_set_anew: bool = True
 
 
 @dataclass(frozen=True)
@@ -54,6 +71,7 @@ class MotorPlan:
         timing: What paces it.
         storage: Where its step interrupt keeps its state.
         handler: Where the step interrupt goes on in its rare ways, by the linker's name.
+        gate: What the timing puts before the step.
         hot_path: The step interrupt.
         steps_per_turn: Steps of its sequence in one turn of the shaft, or None.
         releases_at_rest: Whether the coils go off when it comes to rest.
@@ -67,25 +85,11 @@ class MotorPlan:
     timing: TimerPlan
     storage: Storage
     handler: str
+    gate: Gate
     hot_path: HotPath
     steps_per_turn: Fraction | None
     releases_at_rest: bool
     owns_ports: bool
-
-    @property
-    def elapsed_cycles(self) -> tuple[int, ...]:
-        """
-        Return the cycles from a due step until the boundary handler has set the timer anew.
-
-        Then the same where the handler looked at the clock and made the step itself; then both
-        with a limit in milliseconds, for a motion that takes longer with one.
-        """
-        handler, motion = self.kernel.handler, self.motion
-        usual = self.hot_path.boundary_entry_cycles + handler.to_clock + motion.to_clock_cycles
-        woken = self.hot_path.think_entry_cycles + handler.to_clock_thinking
-        both = (usual, woken + motion.thinking_cycles)
-        limited = tuple(cycles + motion.limit_cycles for cycles in both)
-        return both + limited if motion.limit_cycles else both
 
     @property
     def isr_bound_cycles(self) -> int:
@@ -96,6 +100,18 @@ class MotorPlan:
             self.hot_path.boundary_entry_cycles
             + self.kernel.handler.longest
             + self.motion.handler_cycles
+            - (0 if self.timing.is_set_anew else self.motion.setting_cycles)
+        )
+
+    @property
+    def masked_bound_cycles(self) -> int:
+        """
+        Return the longest that a call for it may have interrupts off.
+        """
+        return (
+            self.motion.masked_cycles
+            + self.kernel.handler.masked
+            - (0 if self.timing.is_set_anew else self.motion.masked_setting_cycles)
         )
 
     @property

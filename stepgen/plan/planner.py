@@ -21,15 +21,12 @@ from stepgen.plan.isr import compose
 from stepgen.plan.kernels import choose_kernel
 from stepgen.plan.model import MotorPlan, Plan, TimerPlan
 from stepgen.plan.motions import plan_motion
-from stepgen.plan.timings import plan_timing
-from stepgen.plan.timings.fast_pwm import LARGEST_PERIOD_CYCLES
+from stepgen.plan.timings import plan_gate, plan_timing, shortest_period_cycles, way_out
 from stepgen.plan.uses import Use, read_uses
 from stepgen.spec import LoadedSpec, Motor
 
 MILLIS_INTERRUPT_CYCLES = 110
 """The most that the core's millis interrupt may take; verification proves it."""
-
-_SMALLEST_PERIOD_CYCLES = 640  # system 1: 25 000 steps/s at 16 MHz
 
 
 def make_plan(loaded: LoadedSpec) -> Plan:
@@ -58,13 +55,15 @@ def make_plan(loaded: LoadedSpec) -> Plan:
     ]
     faults.raise_if_any()
     planned = tuple(motor for motor in motors if motor)
+    shortest = _minimum_period_cycles(planned, faults)
+    faults.raise_if_any()
     return Plan(
         library=spec.library,
         board=board,
         motors=planned,
         masked_bound_cycles=_masked_bound_cycles(planned),
-        minimum_period_cycles=_minimum_period_cycles(planned),
-        largest_period_cycles=LARGEST_PERIOD_CYCLES,
+        minimum_period_cycles=shortest,
+        largest_period_cycles=min(motor.timing.largest_period_cycles for motor in planned),
         uses=spec.uses,
     )
 
@@ -73,26 +72,29 @@ def _masked_bound_cycles(motors: tuple[MotorPlan, ...]) -> int:
     """
     Return the longest stretch of the library's own calls with interrupts off.
     """
-    return max(
-        (motor.motion.masked_cycles + motor.kernel.handler.masked for motor in motors), default=0
-    )
+    return max((motor.masked_bound_cycles for motor in motors), default=0)
 
 
-def _minimum_period_cycles(motors: tuple[MotorPlan, ...]) -> int:
+def _minimum_period_cycles(motors: tuple[MotorPlan, ...], faults: Faults) -> int:
     """
-    Return the shortest period in which no overflow of any motor can be missed.
+    Return the shortest period in which no interrupt of any motor can be missed.
 
-    The timer keeps one overflow that waits, not two: each must be served before the next. It
-    waits for a call of the library with interrupts off, for every other interrupt once, and
-    for what a motor's own last interrupt ran over its period P: own + others - P. So
-    P > others + (own + others - P), which is P > others + own / 2.
+    Each waits for a call of the library with interrupts off, and for every other interrupt once.
     """
-    shortest = _SMALLEST_PERIOD_CYCLES
+    shortest = 0
     every = sum(motor.isr_bound_cycles for motor in motors)
     for motor in motors:
         own = motor.isr_bound_cycles
-        others = every - own + MILLIS_INTERRUPT_CYCLES + _masked_bound_cycles(motors)
-        shortest = max(shortest, others + own // 2 + 1)
+        interrupts = every - own + MILLIS_INTERRUPT_CYCLES
+        masked = _masked_bound_cycles(motors)
+        period = shortest_period_cycles(motor.timing, own, interrupts, masked)
+        if period is None:
+            _at(faults, motor.name).at("timing").report(
+                f"step interrupts and calls of this library could keep timer "
+                f"{motor.timing.timer.number} waiting too long for {motor.timing.kind}; take "
+                "`timing: fast-pwm`, `motion: constant`, pins on fewer ports, or fewer motors"
+            )
+        shortest = max(shortest, period or 0)
     return shortest
 
 
@@ -131,11 +133,11 @@ def free_timers(
     board: Board, uses: Iterable[Use], taken: Iterable[TimerPlan | None]
 ) -> tuple[int, ...]:
     """
-    Return the 16-bit timers of *board* that neither *uses* nor the plans in *taken* need.
+    Return the timers of *board* that neither *uses* nor the plans in *taken* need, wide ones first.
     """
     busy = {plan.timer.number for plan in taken if plan}
     busy.update(number for use in uses for number in use.timers)
-    numbers = (timer.number for timer in board.mcu.timers16)
+    numbers = (timer.number for timer in board.mcu.timers)
     return tuple(number for number in numbers if number not in busy)
 
 
@@ -150,7 +152,8 @@ def _claims(
     for name, (drive, timing) in parts.items():
         place = _at(faults, name)
         motors.extend(drive_claims(name, drive, place) if drive else ())
-        motors.extend(timing_claims(name, timing, free, place) if timing else ())
+        if timing:
+            motors.extend(timing_claims(name, timing, way_out(timing, board, free), place))
     return (*sketch_claims(uses, board, motors, faults), *motors)
 
 
@@ -171,6 +174,7 @@ def _plan_motor(
     # avr-gcc takes a function for an interrupt handler only when it is called __vector...
     handler = f"__vector_{name}_boundary"
     motion = plan_motion(motor.motion)
+    gate = plan_gate(timing, storage, board.mcu)
     return MotorPlan(
         name=name,
         motion=motion,
@@ -179,7 +183,10 @@ def _plan_motor(
         timing=timing,
         storage=storage,
         handler=handler,
-        hot_path=compose(kernel, storage, board.mcu, handler, watches_clock=motion.watches_clock),
+        gate=gate,
+        hot_path=compose(
+            kernel, storage, board.mcu, handler, gate, watches_clock=motion.watches_clock
+        ),
         steps_per_turn=_steps_per_turn(motor, drive),
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",

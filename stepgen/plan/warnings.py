@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from stepgen.devices import SKETCH_LIBRARIES, LibraryClaims, Pin, library_claims
 from stepgen.plan.model import MotorPlan, Plan
+from stepgen.plan.timings import way_out
 from stepgen.plan.uses import ANALOG_WRITE, read_uses
 
 # What else fails beside the library itself where its pins are taken.
@@ -76,21 +77,20 @@ def _timer_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
             beyond = f" if more than {objects} are attached" if objects else ""
             yield (
                 f"{library.name} needs timer {number}{beyond} and will not work beside it; "
-                f"{_way_out(library, plan)}"
+                f"{_way_out(motor, library, plan)}"
             )
 
 
-def _way_out(library: LibraryClaims, plan: Plan) -> str:
+def _way_out(motor: MotorPlan, library: LibraryClaims, plan: Plan) -> str:
     """
-    Return the timers that neither the plan nor *library* with few objects needs.
+    Return what *motor* can take that neither the plan nor *library* with few objects needs.
     """
     busy = {motor.timing.timer.number for motor in plan.motors} | {library.timers[0]}
     for use in read_uses(plan.uses, plan.board, lambda _index, _reason: None).values():
         busy.update(use.timers)
-    free = [str(t.number) for t in plan.board.mcu.timers16 if t.number not in busy]
-    if not free:
-        return "no other 16-bit timer is left on this board"
-    return f"if the sketch uses it, take timer {' or '.join(free)}"
+    timers = [timer.number for timer in plan.board.mcu.timers]
+    free = tuple(number for number in timers if number not in busy)
+    return f"if the sketch uses it, {way_out(motor.timing, plan.board, free)}"
 
 
 def _pwm_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
@@ -105,9 +105,10 @@ def _pwm_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
     pins = [pin for pin in plan.board.pins if pin.bit in free.values()]
     if pins:
         top = f"it rewrites OCR{timer.number}A, and the motor would run away"
+        effect = top if "A" in free else "it would follow the motor's timer"
         yield (
             f"no {ANALOG_WRITE}() on {_listed(pins, 'or')}, PWM of timer {timer.number}: "
-            f"{top if 'A' in free else 'it would follow the steps'}; take other pins for it"
+            f"{effect}; take other pins for it"
         )
 
 

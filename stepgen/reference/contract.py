@@ -6,6 +6,7 @@ from enum import IntEnum, IntFlag
 from typing import Literal
 
 MotionKind = Literal["constant", "update-events"]
+TimingKind = Literal["fast-pwm", "compare"]
 
 
 class Control(IntFlag):

@@ -40,7 +40,7 @@ class Engine:
         """
         Begin the motion of the accepted *call*; one in progress ends its interval first.
         """
-        motion = Motion.of(call, call_index, self.millis, self.facts.minimum_cycles)
+        motion = Motion.of(call, call_index, self.millis, self.facts)
         if not self.running:
             self.pace.stop()
             self.axis.switch(call.cycle, on=True, call_index=call_index)

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from stepgen.reference.contract import MotionKind
+from stepgen.reference.contract import MotionKind, TimingKind
 from stepgen.reference.sequences import Pattern
-from stepgen.reference.timer import FASTEST_CYCLES, SLOWEST_CYCLES
+from stepgen.reference.timer import FASTEST_CYCLES, SETTINGS, SLOWEST_CYCLES, TimerSetting
 
 ServiceCycle = Callable[[int], int]
 
@@ -25,6 +25,7 @@ class MotorFacts:
         at_rest: Whether the coils stay on when the motor stops.
         motion: Whether its library has update events.
         shares_enables: Whether the wires that switch its coils off are another motor's too.
+        timing: What paces it.
     """
 
     phases: tuple[Pattern, ...]
@@ -33,10 +34,17 @@ class MotorFacts:
     at_rest: Literal["hold", "release"]
     motion: MotionKind = "constant"
     shares_enables: bool = False
+    timing: TimingKind = "fast-pwm"
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:
             raise ValueError(f"minimum_cycles = {self.minimum_cycles} is out of range")
+
+    def setting(self, virtual_cycles: int) -> TimerSetting:
+        """
+        Return what the timing makes of *virtual_cycles* between two steps.
+        """
+        return SETTINGS[self.timing](virtual_cycles)
 
     @property
     def released(self) -> tuple[Pattern, ...]:

@@ -1,8 +1,8 @@
 """
 The integer model: predicts every edge of one motor exactly, from what happens to it.
 
-Motions ``constant`` and ``update-events``, timing fast PWM mode 15. The contract is the table
-of systems/1-motor-driver.md; the timer is in `stepgen.reference.timer`.
+Motions ``constant`` and ``update-events``, timings ``fast-pwm`` and ``compare``. The
+contract is the table of systems/1-motor-driver.md; the timer is in `stepgen.reference.timer`.
 """
 
 from typing import assert_never
@@ -34,7 +34,7 @@ class MotorModel:
     """
     One motor, fed with stimuli in the order of their cycles; it begins as Init leaves it.
 
-    A deadline is the cycle at which the timer sets TOV. Its interrupt is served at
+    A deadline is the cycle at which the timer sets its flag for a step. Its interrupt is served at
     ``service_cycle(deadline)``, the deadline or later. What is served up to and including
     the commit of a call belongs to the calls before it; a millis limit and the update events of
     the interrupt are judged with the last `MillisTick` at or before the service. Deadlines are

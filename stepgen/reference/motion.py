@@ -2,12 +2,14 @@
 What one accepted call asks for, and how much of it is left.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Self
 
 from stepgen.reference.contract import Control
+from stepgen.reference.facts import MotorFacts
 from stepgen.reference.stimuli import UINT32_STATES, SetSpeed
-from stepgen.reference.timer import TimerSetting, timer_setting
+from stepgen.reference.timer import TimerSetting
 from stepgen.reference.updates import Updates
 
 
@@ -24,6 +26,7 @@ class Motion:
         millis_limit: Its length, None without a millis limit.
         start_millis: What ``millis()`` returned at the commit of the call.
         updates: Its update events, None at a fixed speed.
+        setting: What the timing makes of a virtual value.
         steps_made: Steps of this call so far.
     """
 
@@ -34,14 +37,15 @@ class Motion:
     millis_limit: int | None
     start_millis: int
     updates: Updates | None
+    setting: Callable[[int], TimerSetting]
     steps_made: int = 0
     _next: TimerSetting = field(init=False)
 
     def __post_init__(self) -> None:
-        self._next = timer_setting(self.virtual_cycles)
+        self._next = self.setting(self.virtual_cycles)
 
     @classmethod
-    def of(cls, call: SetSpeed, call_index: int, millis: int, fastest_cycles: int) -> Self:
+    def of(cls, call: SetSpeed, call_index: int, millis: int, facts: MotorFacts) -> Self:
         """
         Return the motion that the accepted *call* starts while ``millis()`` returns *millis*.
         """
@@ -54,7 +58,8 @@ class Motion:
             steps_left=None if by_millis else limit,
             millis_limit=limit if by_millis else None,
             start_millis=millis,
-            updates=Updates.of(call, fastest_cycles),
+            updates=Updates.of(call, facts.minimum_cycles),
+            setting=facts.setting,
         )
 
     @property
@@ -111,7 +116,7 @@ class Motion:
         if updates is None or not updates.due(self._elapsed(millis), self.steps_made):
             return False
         self.virtual_cycles, stopped = updates.apply(self.virtual_cycles)
-        self._next = timer_setting(self.virtual_cycles)
+        self._next = self.setting(self.virtual_cycles)
         return stopped
 
     def _elapsed(self, millis: int) -> int:

@@ -17,7 +17,7 @@ class Pace:
     Args:
         service_cycle: A pure function from a deadline to the cycle of its service.
         interval: Prescaler and period of the interval in progress, None at rest.
-        deadline_cycle: When the timer sets TOV next, None until its clock is on.
+        deadline_cycle: When the timer sets the flag of a step next, None until its clock is on.
     """
 
     service_cycle: ServiceCycle

@@ -1,14 +1,19 @@
 """
-The 16-bit timer in fast PWM mode 15, written the datasheet's way.
+The 16-bit timer in fast PWM mode 15, written the datasheet's way, and timer 2 running through.
 
 Sources: ATmega328P and ATmega2560 datasheets, "16-bit Timer/Counter", sections "Fast PWM
 Mode", "Timer/Counter Timing Diagrams" and "Using the Output Compare Unit", and
 "Timer/Counter0 and Timer/Counter1 Prescalers", "Internal Clock Source".
 """
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+
+from stepgen.reference.contract import TimingKind
 
 PRESCALERS = (1, 8, 64, 256, 1024)
+COMPARE_PRESCALER = 8
 COUNTER_STATES = 65_536
 SLOWEST_CYCLES = 65_535 * 1024
 FASTEST_CYCLES = 4  # mode 15 has at least 2 bits: OCRnA = 3 is the smallest TOP
@@ -21,7 +26,7 @@ class TimerSetting:
 
     Args:
         prescaler: CPU cycles in one timer tick: 1, 8, 64, 256 or 1024.
-        period_ticks: Timer ticks between two overflows, 1 to 65535.
+        period_ticks: Timer ticks between two steps; of fast PWM, between two overflows, 1 to 65535.
     """
 
     prescaler: int
@@ -57,6 +62,28 @@ def timer_setting(virtual_cycles: int) -> TimerSetting:
     fitting = (p for p in PRESCALERS if virtual_cycles // p < COUNTER_STATES)
     prescaler = next(fitting)
     return TimerSetting(prescaler, virtual_cycles // prescaler)
+
+
+def through_running_setting(virtual_cycles: int) -> TimerSetting:
+    """
+    Return the setting of the timing ``compare`` for *virtual_cycles*, 8 to 65535 * 1024.
+
+    Its timer has one prescaler for all speeds, 8, and counts as many ticks as the period has; the
+    remainder is truncated. That the counter has 8 bits shows nowhere: steps are due at multiples of
+    the period after the first, whose ticks are counted like those of any timer.
+
+    Raises:
+        ValueError: Out of range.
+    """
+    if not COMPARE_PRESCALER <= virtual_cycles <= SLOWEST_CYCLES:
+        raise ValueError(f"{virtual_cycles} cycles are not within 8 to {SLOWEST_CYCLES}")
+    return TimerSetting(COMPARE_PRESCALER, virtual_cycles // COMPARE_PRESCALER)
+
+
+SETTINGS: Mapping[TimingKind, Callable[[int], TimerSetting]] = MappingProxyType(
+    {"fast-pwm": timer_setting, "compare": through_running_setting}
+)
+"""What each timing makes of a virtual value."""
 
 
 def first_tick_cycle(clock_on_cycle: int, prescaler: int) -> int:

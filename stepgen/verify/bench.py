@@ -178,5 +178,8 @@ def watched_registers(plan: Plan) -> list[int]:
     return [
         address
         for timer in timers
-        for address in (timer.tccrb.address, timer.tcnt.address, timer.tcnt.address + 1)
+        for address in (
+            timer.tccrb.address,
+            *(timer.tcnt.address + byte for byte in range(timer.counter_bytes)),
+        )
     ]

@@ -58,7 +58,7 @@ def _calls(trace: Trace, subject: Subject, index: int, plan: Plan) -> list[Answe
     steps = round(motor.steps_per_turn) if motor.steps_per_turn else _DEFAULT_STEPS
     top = plan.board.f_cpu_hz // _SPEED_SPS
     answers: list[Answer] = []
-    for start in trace.clock_starts(subject.tccrb, subject.tcnt):
+    for start in trace.clock_starts(subject.timer):
         section = trace.masked_section(start.cycle)
         if section:  # the Arduino core's own init() starts every timer with interrupts on
             control = BACK if len(answers) % 2 else DRIVE

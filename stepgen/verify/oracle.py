@@ -194,7 +194,7 @@ class Oracle:
         for answer in self._scene.answers:
             if answer.call.motor == self._index:
                 yield from _rows_of_call(answer, trace)
-        for start in trace.clock_starts(subject.tccrb, subject.tcnt):
+        for start in trace.clock_starts(subject.timer):
             clock_on = ClockOn(start.cycle, start.prescaler, start.tcnt)
             yield start.cycle, _Order.CLOCK, _Told(clock_on)
         board = self._scene.plan.board

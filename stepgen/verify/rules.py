@@ -11,7 +11,7 @@ from itertools import pairwise
 from stepgen.plan.model import MotorPlan
 from stepgen.reference.contract import Control
 from stepgen.reference.stimuli import Edge, EdgeKind
-from stepgen.reference.timer import TimerSetting, timer_setting
+from stepgen.reference.timer import TimerSetting
 from stepgen.verify.bench import Answer, CallKind
 from stepgen.verify.oracle import WAKE_CYCLES, Scene
 from stepgen.verify.subject import Subject
@@ -34,8 +34,8 @@ def broken_rules(
     yield from _unmasked_calls(scene, answers)
     steps = [edge for edge in edges if edge.kind is EdgeKind.STEP]
     calls = [answer for answer in answers if answer.call.kind not in _NO_CODE]
-    starts = scene.trace.clock_starts(subject.tccrb, subject.tcnt)
-    yield from _wrong_changes(runs, calls, steps, starts)
+    starts = scene.trace.clock_starts(subject.timer)
+    yield from _wrong_changes(subject, runs, calls, steps, starts)
     yield from _wrong_starts(subject, scene, calls, steps)
     yield from _late_edges(scene.plan.motors[index], runs, calls, steps)
 
@@ -51,6 +51,7 @@ def _unmasked_calls(scene: Scene, answers: Sequence[Answer]) -> Iterator[str]:
 
 
 def _wrong_changes(
+    subject: Subject,
     runs: Sequence[Run],
     calls: Sequence[Answer],
     steps: Sequence[Edge],
@@ -68,7 +69,7 @@ def _wrong_changes(
         run = by_deadline.get(first.deadline_cycle)
         if not is_first_of_call or run is None:
             continue
-        old, new = _running_prescaler(starts, run.entered), _setting(calls, first)
+        old, new = _running_prescaler(starts, run.entered), _setting(subject, calls, first)
         late = run.entered - run.raised
         allowed = max(old, new.prescaler) + late + _CALIBRATION_CYCLES
         error = second.deadline_cycle - first.deadline_cycle - new.period_cycles
@@ -86,8 +87,8 @@ def _running_prescaler(starts: Sequence[ClockStart], cycle: int) -> int:
     return next(start.prescaler for start in reversed(starts) if start.cycle < cycle)
 
 
-def _setting(calls: Sequence[Answer], edge: Edge) -> TimerSetting:
-    return timer_setting(calls[edge.call_index].call.top)
+def _setting(subject: Subject, calls: Sequence[Answer], edge: Edge) -> TimerSetting:
+    return subject.facts.setting(calls[edge.call_index].call.top)
 
 
 def _wrong_starts(
@@ -96,7 +97,7 @@ def _wrong_starts(
     """
     From rest the first step comes one interval after the call, at most one tick early.
     """
-    starts = scene.trace.clock_starts(subject.tccrb, subject.tcnt)
+    starts = scene.trace.clock_starts(subject.timer)
     firsts: dict[int, Edge] = {}
     for step in steps:
         firsts.setdefault(step.call_index, step)
@@ -107,7 +108,7 @@ def _wrong_starts(
         first = firsts.get(index)
         if first is None or not any(commit[0] < start.cycle <= commit[1] for start in starts):
             continue
-        setting = timer_setting(answer.call.top)
+        setting = subject.facts.setting(answer.call.top)
         wait = first.deadline_cycle - commit[0]
         longest = setting.period_cycles + commit[1] - commit[0]
         if not setting.period_cycles - setting.prescaler <= wait <= longest:

@@ -14,8 +14,9 @@ BACK = int(Control.DRV_EN | Control.DIRECTION)
 MILLIS = int(Control.DRV_EN | Control.ENDPOINT_MILLIS)
 _SETTLE_CYCLES = 20_000
 _LONG_MOVE_STEPS = 70_000
-# A period in the range of each prescaler that is no multiple of it, so that truncation shows.
-_PERIODS = {1: 20_000, 8: 100_003, 64: 600_011, 256: 5_000_021, 1024: 20_000_099}
+# A period in the range of each prescaler of fast PWM: 1, 8, 64, 256 and 1024; all but the first are
+# no multiple of it, so that truncation shows.
+_PERIODS = (20_000, 100_003, 600_011, 5_000_021, 20_000_099)
 
 
 @dataclass(frozen=True)
@@ -66,9 +67,9 @@ def _standard(plan: Plan, fastest: int) -> Iterator[tuple[str, Loop, list[Action
         Loop.BUSY,
         list(_long_moves(motors, fastest)),
     )
-    for prescaler, period in _PERIODS.items():
+    for period in _PERIODS:
         yield (
-            f"a rate with prescaler {prescaler}",
+            f"a step each {period} clocks",
             Loop.SLEEP,
             [*_each(motors, BACK, period, 6), Wait(8 * period), *(_read(m) for m in motors)],
         )

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from stepgen.devices import Board, PortBit
+from stepgen.devices import Board, PortBit, Timer
 from stepgen.plan.model import Plan
-from stepgen.reference.contract import MotionKind
+from stepgen.reference.contract import MotionKind, TimingKind
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.sequences import coils_off, phases
 from stepgen.spec import LoadedSpec, Motor
@@ -31,7 +31,7 @@ class Subject:
         facts: What the reference model needs.
         wires: The port bit of each wire, in the model's order.
         vector: Number of the interrupt that makes its steps.
-        tccrb: Data address of the register that holds its clock select; tcnt likewise.
+        timer: Its timer.
         is_shield: Whether its wires are the motor shield's enables and directions.
         shared: Those of its wires that are another motor's too.
     """
@@ -40,8 +40,7 @@ class Subject:
     facts: MotorFacts
     wires: tuple[PortBit, ...]
     vector: int
-    tccrb: int
-    tcnt: int
+    timer: Timer
     is_shield: bool
     shared: tuple[PortBit, ...] = ()
 
@@ -75,7 +74,6 @@ def subjects(loaded: LoadedSpec, plan: Plan) -> tuple[Subject, ...]:
     found = []
     for name, planned in zip(loaded.spec.motors, plan.motors, strict=True):
         motor = loaded.spec.motors[name]
-        timer = planned.timing.timer
         shared = tuple(bit for bit in wires[name] if users[bit] > 1)
         found.append(
             Subject(
@@ -83,8 +81,7 @@ def subjects(loaded: LoadedSpec, plan: Plan) -> tuple[Subject, ...]:
                 facts=_facts(motor, plan, shares_enables=bool(shared)),
                 wires=wires[name],
                 vector=plan.board.mcu.vector(planned.timing.vector).number,
-                tccrb=timer.tccrb.address,
-                tcnt=timer.tcnt.address,
+                timer=planned.timing.timer,
                 is_shield=motor.drive.kind == "motor-shield",
                 shared=shared,
             )
@@ -104,6 +101,8 @@ def _facts(motor: Motor, plan: Plan, *, shares_enables: bool) -> MotorFacts:
     kind: Literal["four-wire", "motor-shield"] = drive.kind
     motion_spec: Any = motor.motion
     motion: MotionKind = motion_spec.kind
+    timing_spec: Any = motor.timing
+    timing: TimingKind = timing_spec.kind
     sequence: str | Sequence[str] = getattr(drive.sequence, "patterns", drive.sequence)
     return MotorFacts(
         phases=phases(kind, sequence),
@@ -111,6 +110,7 @@ def _facts(motor: Motor, plan: Plan, *, shares_enables: bool) -> MotorFacts:
         minimum_cycles=plan.minimum_period_cycles,
         at_rest=motor.at_rest,
         motion=motion,
+        timing=timing,
         shares_enables=shares_enables,
     )
 

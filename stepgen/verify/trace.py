@@ -7,12 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stepgen.devices import Mcu
+from stepgen.devices import Mcu, Timer
 from stepgen.reference.core_clock import millis_after
 from stepgen.verify.events import Events, Kind
 
 _CLOCK_SELECT = 0b111
-_PRESCALERS = {1: 1, 2: 8, 3: 64, 4: 256, 5: 1024}  # CSn2..0, datasheet
 
 
 @dataclass(frozen=True)
@@ -121,12 +120,12 @@ class Trace:
             held[state.port] = state.value
         return held
 
-    def clock_starts(self, tccrb: int, tcnt: int) -> list[ClockStart]:
+    def clock_starts(self, timer: Timer) -> list[ClockStart]:
         """
-        Return when the timer's clock select was set after it had been 0.
+        Return when the clock select of *timer* was set after it had been 0.
         """
         starts = []
-        counter = {tcnt: 0, tcnt + 1: 0}
+        counter = {timer.tcnt.address + byte: 0 for byte in range(timer.counter_bytes)}
         running = False
         rows = self._of(Kind.REGISTER)
         for cycle, source, value in zip(
@@ -134,11 +133,11 @@ class Trace:
         ):
             if source in counter:
                 counter[source] = value
-            elif source == tccrb:
+            elif source == timer.tccrb.address:
                 select = value & _CLOCK_SELECT
                 if select and not running:
-                    count = counter[tcnt] | counter[tcnt + 1] << 8
-                    starts.append(ClockStart(cycle, _PRESCALERS[select], count))
+                    count = int.from_bytes(counter.values(), "little")
+                    starts.append(ClockStart(cycle, timer.prescalers[select - 1], count))
                 running = bool(select)
         return starts
 

@@ -60,18 +60,19 @@ def test_a_board_fits_a_pipe(stepgen: Stepgen, name: str) -> None:
         )
     for label in board.analog_inputs:
         assert re.search(rf"^{label} +- +analog input only", run.out, re.MULTILINE)
-    assert all(timer.ovf.name in run.out for timer in board.mcu.timers16)
+    assert all(timer.ovf.name in run.out for timer in board.mcu.timers)
 
 
 def test_the_uno_is_described(stepgen: Stepgen) -> None:
     """
-    Timer 1 of the Uno: D9 and D10, its vectors, and the Servo library that takes it.
+    Timer 1 of the Uno: D9 and D10, its vectors, and the Servo library that takes it. Timer 2: tone.
 
     Source: ATmega328P datasheet, table of vectors; Arduino Uno pinout; Servo library.
     """
     out = stepgen("boards", "uno").out
 
-    assert re.search(r"^1 +A D9 \(PB1\) +D8 \(PB0\) +TIMER1_OVF_vect +Servo", out, re.MULTILINE)
+    assert re.search(r"^1 +16 +A D9 \(PB1\) +D8 \(PB0\) +TIMER1_OVF_vect +Servo", out, re.MULTILINE)
+    assert re.search(r"^2 +8 +A D11 \(PB3\) +TIMER2_OVF_vect +tone", out, re.MULTILINE)
     assert re.search(r"^B +0x23 +0x24 +0x25 +D8, D9, D10, D11, D12, D13", out, re.MULTILINE)
 
 

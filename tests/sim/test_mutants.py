@@ -107,7 +107,7 @@ MUTANTS = (
     ),
     Mutant(
         "a new TOP that loses a step count when the prescaler changes",
-        "motions/update_events.j2",
+        "timings/fast_pwm.j2",
         "motion.rest += ahead;",
         "motion.rest += ahead - 1;",
         spec="uno_variable_speed",
@@ -152,6 +152,41 @@ MUTANTS = (
         "motions/constant.j2",
         "motion.endMillis) < 0)",
         "motion.endMillis) <= 0)",
+    ),
+    Mutant(
+        "a first interval that is a tick too long",
+        "timings/compare.j2",
+        "motion.next.first - 1;",
+        "motion.next.first;",
+        spec="uno_servo_beside",
+    ),
+    Mutant(
+        "a lap too many where their number is a multiple of 256",
+        "timings/compare.j2",
+        "((laps - 1) >> 8)",
+        "(laps >> 8)",
+        spec="uno_servo_beside",
+    ),
+    Mutant(
+        "an interval without its odd tick",
+        "timings/compare.j2",
+        "(rest - first)",
+        "(first)",
+        spec="uno_servo_beside",
+    ),
+    Mutant(
+        "a change of speed that acts in the middle of an interval",
+        "timings/compare.j2",
+        "{{ motor.name }}RunTimer();\n}\n",
+        "{{ motor.name }}RunTimer();\n} else {\n  motion.now.last = motion.next.last;\n}\n",
+        spec="uno_servo_beside",
+    ),
+    Mutant(
+        "a compare match that still waits after a stop",
+        "timings/compare.j2",
+        "{{ timer.tifr }} = _BV({{ timer.ocf }});",
+        "",
+        spec="uno_servo_beside",
     ),
 )
 

@@ -30,6 +30,9 @@ KINDS = (
     "uno_variable_speed",
     "uno_three_ports_variable",
     "pro-mini-8mhz_28byj48",
+    "uno_servo_beside",
+    "uno_servo_beside_variable",
+    "uno_two_motors",
 )
 WEIGHTS = {
     CallKind.SET_SPEED: 60,

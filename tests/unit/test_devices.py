@@ -7,7 +7,7 @@ from dataclasses import fields
 
 import pytest
 
-from stepgen.devices import Board, Mcu, PortBit, Register, Timer16
+from stepgen.devices import Board, Mcu, PortBit, Register, Timer, Vector
 
 # Where the datasheets' chapters "Alternate Port Functions" put ICPn.
 CAPTURE_INPUTS = {
@@ -24,7 +24,7 @@ OTHER_OUTPUTS: dict[str, set[tuple[int, str, str]]] = {
 }
 
 
-def registers_of(timer: Timer16) -> list[Register]:
+def registers_of(timer: Timer) -> list[Register]:
     """
     Return all registers of *timer*.
     """
@@ -38,7 +38,7 @@ def test_registers_stand_where_avr_libc_has_them(mcu: Mcu, libc_registers: dict[
     """
     registers = [*mcu.gpiors, mcu.sreg, mcu.clkpr]
     registers += [register for port in mcu.ports for register in (port.pin, port.ddr, port.port)]
-    registers += [register for timer in mcu.timers16 for register in registers_of(timer)]
+    registers += [register for timer in mcu.timers for register in registers_of(timer)]
 
     assert {register.name: register.address for register in registers}.items() <= (
         libc_registers.items()
@@ -101,6 +101,27 @@ def test_each_timer_has_its_own_registers_and_vectors(
         assert (timer.timsk.name, timer.tifr.name) == (f"TIMSK{n}", f"TIFR{n}")
 
 
+def test_the_only_8_bit_timer_beside_the_cores_is_timer_2(
+    mcu: Mcu, libc_registers: dict[str, int], libc_vectors: dict[str, int]
+) -> None:
+    """
+    Timers without a high byte are 0, which counts milliseconds, and 2: each field by its name.
+    """
+    counters = {name for name in libc_registers if re.fullmatch(r"TCNT\d", name)}
+    wide = {name for name in counters if f"{name}H" in libc_registers}
+
+    (timer,) = mcu.timers8
+    assert counters - wide == {"TCNT0", "TCNT2"}
+    names = {field.name: getattr(timer, field.name) for field in fields(timer)}
+    for field, value in names.items():
+        if isinstance(value, Register):
+            assert value.name == re.sub(r"^(tccr|tcnt|ocr|timsk|tifr)", r"\g<1>2", field).upper()
+        if isinstance(value, Vector):
+            assert value.name == f"TIMER2_{field.upper()}_vect"
+            assert value.number == libc_vectors[value.name]
+    assert {mcu.timer8(2), mcu.timer8(0), mcu.timer8(1)} == {timer, None}
+
+
 def test_timer_pins_are_those_of_the_core_and_the_datasheet(
     board: Board, pin_tables: dict[str, bytes], core_numbers: dict[str, int]
 ) -> None:
@@ -115,11 +136,11 @@ def test_timer_pins_are_those_of_the_core_and_the_datasheet(
     used = {
         (int(channels[code][0]), channels[code][1], board.pins[number].bit.name)
         for number, code in enumerate(pin_tables["digital_pin_to_timer_PGM"])
-        if code and board.mcu.timer16(int(channels[code][0]))
+        if code and int(channels[code][0]) in {timer.number for timer in board.mcu.timers}
     }
     outputs = {
         (timer.number, channel, bit.name)
-        for timer in board.mcu.timers16
+        for timer in board.mcu.timers
         for channel, bit in timer.outputs
     }
     captures = {t.number: t.capture_input and t.capture_input.name for t in board.mcu.timers16}

@@ -68,11 +68,12 @@ def test_servo_takes_the_only_timer_of_the_uno(faults: Faulty) -> None:
     (line,) = _lines(named)
     assert line == (
         ":5:39 timer 1 is taken by Servo and wanted by motor motor; "
-        "no other 16-bit timer is left on this board, so take a larger one, "
-        "or remove Servo from `uses`"
+        "take `timing: {kind: compare, timer: 2}` or a larger board, since no other 16-bit timer "
+        "is left on this one, or remove Servo from `uses`"
     )
     assert any_timer[0].reason.endswith(
-        "remove a motor or a library from `uses`, or take a larger board"
+        "take `timing: {kind: compare, timer: 2}` or a larger board, or remove a motor or a "
+        "library from `uses`"
     )
 
 
@@ -85,11 +86,13 @@ def test_servo_takes_a_timer_of_the_mega_for_every_12(
 ) -> None:
     """
     Timers 5, 1, 3 and 4 go in this order (ServoTimers.h); without pins there are up to 12 servos.
+
+    The 8-bit timer 2 is never theirs.
     """
     pins = [pin.label for pin in mega.pins[14 : 14 + servos]]
     uses = read_uses([" ".join(["Servo", *pins])], mega, _never)
 
-    assert free_timers(mega, uses.values(), ()) == free
+    assert free_timers(mega, uses.values(), ()) == (*free, 2)
 
 
 def test_more_servos_than_timers_are_refused(faults: Faulty) -> None:
@@ -151,7 +154,7 @@ def test_an_unknown_library_is_refused_with_the_known_ones(faults: Faulty) -> No
     ("pin", "why"),
     [
         ("D9", "it rewrites OCR1A, so that the motor would run away"),
-        ("D10", "its PWM would follow the motor's steps"),
+        ("D10", "its PWM would follow the motor's timer"),
     ],
 )
 def test_analog_write_on_the_motors_timer_is_refused(faults: Faulty, pin: str, why: str) -> None:
@@ -161,8 +164,9 @@ def test_analog_write_on_the_motors_timer_is_refused(faults: Faulty, pin: str, w
     (fault,) = faults(f"board: uno\nuses: [analogWrite {pin}]\nmotors:\n  m: {_UNO_TIMER_1}\n")
 
     assert fault.reason == (
-        f"timer 1 is taken by analogWrite on {pin} ({why}) and wanted by motor m; no other 16-bit "
-        "timer is left on this board, so take a larger one, or use analogWrite on D3 or D11"
+        f"timer 1 is taken by analogWrite on {pin} ({why}) and wanted by motor m; take `timing: "
+        f"{{kind: compare, timer: 2}}` or a larger board, since no other 16-bit timer is left on "
+        "this one, or use analogWrite on D3 or D11"
     )
 
 

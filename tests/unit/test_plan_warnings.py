@@ -42,10 +42,11 @@ def test_the_shield_on_the_uno_takes_a_lot(warned: Warned) -> None:
     timer, pwm, bus, led = found
     assert timer == (
         "motor pan: Servo needs timer 1 and will not work beside it; "
-        "no other 16-bit timer is left on this board"
+        "if the sketch uses it, take `timing: {kind: compare, timer: 2}` or a larger board, since "
+        "no other 16-bit timer is left on this one"
     )
     assert pwm == (
-        "motor pan: no analogWrite() on D10, PWM of timer 1: it would follow the steps; "
+        "motor pan: no analogWrite() on D10, PWM of timer 1: it would follow the motor's timer; "
         "take other pins for it"
     )
     assert bus == (

@@ -95,8 +95,8 @@ struct ConstantMotion {
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
   __uint24 endLaps;  // after so many more laps of 16384 ms
-  Setting next;  // the next step sets the timer to this, unless its select is 0,
-  uint16_t elapsed;  // which takes so many ticks
+  Setting next;  // the next step sets the timer to this, unless its select is 0
+  uint16_t elapsed;  // the ticks that have passed by then
 };
 
 // Returns why a call of a speed function must be refused, or 0.
@@ -315,7 +315,7 @@ void __vector_motor_boundary() {
   auto &motion = motorMotion;
   const uint8_t mode = motion.mode;
   if (mode & kThink) {
-    // No lap ends before the timer is set: the first one ends 16 s after the call, or later.
+    // No lap ends before a call has taken effect: the first one ends 16 s after it, or later.
     if ((mode & kCoast) || motorMillisOver(!motion.next.select)) {
       GPIOR1 = 1;  // there was no step
       motorCoilsOff();

@@ -3,7 +3,7 @@ ATmega2560: facts from Microchip's datasheet DS40002211 (formerly Atmel 2549).
 """
 
 from stepgen.devices.model import Mcu, Register
-from stepgen.devices.tables import port, timer16, vectors
+from stepgen.devices.tables import port, timer2, timer16, vectors
 
 # Section "Interrupt Vectors in ATmega640/1280/1281/2560/2561"; reset is number 0.
 _VECTORS = vectors(
@@ -49,6 +49,7 @@ MCU = Mcu(
         timer16(4, 0xA0, _VECTORS, {"A": "PH3", "B": "PH4", "C": "PH5"}, "PL0"),
         timer16(5, 0x120, _VECTORS, {"A": "PL3", "B": "PL4", "C": "PL5"}, "PL1"),
     ),
+    timers8=(timer2(_VECTORS, {"A": "PB4", "B": "PH6"}),),
     vectors=_VECTORS,
     gpiors=(Register("GPIOR0", 0x3E), Register("GPIOR1", 0x4A), Register("GPIOR2", 0x4B)),
     sreg=Register("SREG", 0x5F),

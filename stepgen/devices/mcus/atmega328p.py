@@ -3,7 +3,7 @@ ATmega328P: facts from Microchip's datasheet DS40002061.
 """
 
 from stepgen.devices.model import Mcu, Register
-from stepgen.devices.tables import port, timer16, vectors
+from stepgen.devices.tables import port, timer2, timer16, vectors
 
 # Section "Interrupt Vectors in ATmega328P"; reset is number 0.
 _VECTORS = vectors(
@@ -31,6 +31,7 @@ MCU = Mcu(
         port("D", 0x29, range(8)),
     ),
     timers16=(timer16(1, 0x80, _VECTORS, {"A": "PB1", "B": "PB2"}, "PB0"),),
+    timers8=(timer2(_VECTORS, {"A": "PB3", "B": "PD3"}),),
     vectors=_VECTORS,
     gpiors=(Register("GPIOR0", 0x3E), Register("GPIOR1", 0x4A), Register("GPIOR2", 0x4B)),
     sreg=Register("SREG", 0x5F),

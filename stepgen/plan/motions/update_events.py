@@ -19,4 +19,6 @@ def plan(spec: UpdateEvents) -> Motion:
         limit_cycles=40,
         masked_cycles=520,
         dumps=spec.debug,
+        setting_cycles=170,
+        masked_setting_cycles=85,
     )

@@ -3,9 +3,11 @@ What the planner knows of each timing: one module per kind, named like it.
 """
 
 from importlib import import_module
+from typing import Any
 
-from stepgen.devices import Board
+from stepgen.devices import Board, Mcu
 from stepgen.plan.faults import Faults
+from stepgen.plan.instructions import Gate, Storage
 from stepgen.plan.model import TimerPlan
 from stepgen.spec.base import KindModel
 
@@ -18,6 +20,39 @@ def plan_timing(
 
     Returns None after reporting why it cannot be.
     """
-    module = import_module(f"{__name__}.{spec.kind.replace('-', '_')}")
-    plan: TimerPlan | None = module.plan(spec, board, free, faults)
+    plan: TimerPlan | None = _module(spec.kind).plan(spec, board, free, faults)
     return plan
+
+
+def way_out(timing: TimerPlan, board: Board, free: tuple[int, ...]) -> str:
+    """
+    Return what a motor can take in place of the timer of *timing*; *free* are those left.
+    """
+    words: str = _module(timing.kind).way_out(board, free)
+    return words
+
+
+def plan_gate(timing: TimerPlan, storage: Storage, mcu: Mcu) -> Gate:
+    """
+    Return what *timing* puts before the step in the interrupt.
+    """
+    gate: Gate = _module(timing.kind).gate(timing.timer, storage, mcu)
+    return gate
+
+
+def shortest_period_cycles(timing: TimerPlan, own: int, interrupts: int, masked: int) -> int | None:
+    """
+    Return the shortest period that misses no interrupt of *timing*, None if there is none.
+
+    Args:
+        timing: The timing.
+        own: The longest step interrupt of its motor.
+        interrupts: All other interrupts together, each once.
+        masked: The longest that a call of the library has interrupts off.
+    """
+    period: int | None = _module(timing.kind).shortest_period_cycles(own, interrupts, masked)
+    return period
+
+
+def _module(kind: str) -> Any:  # noqa: ANN401 - a module; each offers the functions above
+    return import_module(f"{__name__}.{kind.replace('-', '_')}")

@@ -4,11 +4,14 @@ Fast PWM, mode 15: TOP is OCRnA, double-buffered; the overflow interrupt makes t
 Source: ATmega328P datasheet, 16-bit Timer/Counter1, Fast PWM mode; system 1, chapter 6.
 """
 
-from stepgen.devices import Board, Timer16
+from stepgen.devices import Board, Mcu, Timer16
 from stepgen.plan.faults import Faults
-from stepgen.plan.model import Setting, TimerPlan
+from stepgen.plan.instructions import Gate, Storage
+from stepgen.plan.model import MotorPlan, Setting, TimerPlan
+from stepgen.plan.timings import compare
 from stepgen.spec.timings.fast_pwm import FastPwm
 
+SMALLEST_PERIOD_CYCLES = 640  # system 1: 25 000 steps/s at 16 MHz
 PRESCALERS = (1, 8, 64, 256, 1024)
 LARGEST_TICKS = 65_535
 LARGEST_PERIOD_CYCLES = LARGEST_TICKS * PRESCALERS[-1]
@@ -20,27 +23,66 @@ def plan(spec: FastPwm, board: Board, free: tuple[int, ...], faults: Faults) -> 
     """
     timers = [timer.number for timer in board.mcu.timers16]
     names = " or ".join(str(number) for number in timers)
-    if spec.timer is None and not free:
+    wide = _wide(board, free)
+    if spec.timer is None and not wide:
         faults.report(
             f"the {board.title} has no 16-bit timer left for this motor ({names}); "
-            "remove a motor or a library from `uses`, or take a larger board"
+            f"take {compare.offer(board, free)}a larger board, or remove a motor or a library "
+            "from `uses`"
         )
         return None
-    number = free[0] if spec.timer is None else spec.timer
+    number = wide[0] if spec.timer is None else spec.timer
     timer = board.mcu.timer16(number)
     if timer is None:
         faults.at("timer").report(
             f"the {board.title} has no 16-bit timer {number}; fast PWM runs on timer {names}"
         )
         return None
-    return TimerPlan(spec.kind, timer, vector(timer))
+    return TimerPlan(
+        kind=spec.kind,
+        timer=timer,
+        vector=timer.ovf.name,
+        event="overflow",
+        instant="the timer wraps",
+        smallest_period_cycles=SMALLEST_PERIOD_CYCLES,
+        largest_period_cycles=LARGEST_PERIOD_CYCLES,
+    )
 
 
-def vector(timer: Timer16) -> str:
+def way_out(board: Board, free: tuple[int, ...]) -> str:
     """
-    Return the name of the interrupt that makes the steps.
+    Return what a motor can take in place of its timer; *free* are those left.
     """
-    return timer.ovf.name
+    wide = _wide(board, free)
+    if wide:
+        return f"take timer {' or '.join(str(number) for number in wide)}"
+    return (
+        f"take {compare.offer(board, free)}a larger board, since no other 16-bit timer is left on "
+        "this one"
+    )
+
+
+def _wide(board: Board, free: tuple[int, ...]) -> list[int]:
+    return [number for number in free if board.mcu.timer16(number)]
+
+
+def gate(_timer: Timer16, _storage: Storage, _mcu: Mcu) -> Gate:
+    """
+    Return no gate: each interrupt is a step.
+    """
+    return Gate()
+
+
+def shortest_period_cycles(own: int, interrupts: int, masked: int) -> int:
+    """
+    Return the shortest period in which no overflow can be missed.
+
+    The timer keeps one overflow that waits, not two: each must be served before the next. It
+    waits for all else, and for what the motor's own last interrupt ran over its period P:
+    own + others - P. So P > others + (own + others - P), which is P > others + own / 2.
+    """
+    others = interrupts + masked
+    return max(SMALLEST_PERIOD_CYCLES, others + own // 2 + 1)
 
 
 def choose_setting(period_cycles: int) -> Setting:
@@ -60,3 +102,18 @@ def choose_setting(period_cycles: int) -> Setting:
         raise ValueError(f"{period_cycles} cycles are not within 2 to {LARGEST_PERIOD_CYCLES}")
     prescaler = next(p for p in PRESCALERS if period_cycles // p <= LARGEST_TICKS)
     return Setting(prescaler, period_cycles // prescaler - 1)
+
+
+def elapsed_cycles(motor: MotorPlan) -> tuple[int, ...]:
+    """
+    Return the cycles from a due step until the boundary handler has set the timer anew.
+
+    Then the same where the handler looked at the clock and made the step itself; then both
+    with a limit in milliseconds, for a motion that takes longer with one.
+    """
+    handler, motion = motor.kernel.handler, motor.motion
+    usual = motor.hot_path.boundary_entry_cycles + handler.to_clock + motion.to_clock_cycles
+    woken = motor.hot_path.think_entry_cycles + handler.to_clock_thinking
+    both = (usual, woken + motion.thinking_cycles)
+    limited = tuple(cycles + motion.limit_cycles for cycles in both)
+    return both + limited if motion.limit_cycles else both

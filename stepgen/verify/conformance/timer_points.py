@@ -1,5 +1,5 @@
 """
-Points about the 16-bit timers. Sections are those of chapter 16 of the ATmega328P datasheet.
+Points about the timers. Sections are those of chapters 16 and 18 of the ATmega328P datasheet.
 """
 
 from collections.abc import Iterator
@@ -9,7 +9,8 @@ from stepgen.verify.conformance.point import MEGA_1280_CHIP, MEGA_CHIP, Judge, p
 from stepgen.verify.events import Kind
 
 # Data addresses, chapter 31 "Register Summary".
-TCCR1B, TCNT1L, OCR1AL = 0x81, 0x84, 0x88
+TCCR1B, TCNT1L, OCR1AL, TCCR2B = 0x81, 0x84, 0x88, 0xB1
+TIMER2_COMPA = 7  # table 12-6, number less one
 # WGM13:0 and CS12:0, tables 16-4 and 16-5.
 CTC, CTC_ICR, FAST_ICR, FAST = 4, 12, 14, 15
 CLOCKS = {1: 1, 8: 2, 64: 3, 256: 4, 1024: 5}
@@ -192,6 +193,20 @@ def compare_flag_edge(lab: Lab) -> Iterator[str]:
         clock_on = cycles(machine, Kind.REGISTER)[-1]
         expected = (clock_on // 8 + 252) * 8
         yield from lab.differ("first flag", [expected], cycles(machine, Kind.RAISE)[:1])
+
+
+@point("timer2-compare", "Timer 2: a compare match each 256 ticks of its own prescaler", "18.7.1")
+def timer2_compare(lab: Lab) -> Iterator[str]:
+    """
+    See the first match where OCR2A is left, counted from the tick after the start, then one a lap.
+    """
+    with lab.running("timer2", watch=(TCCR2B,), CLOCK=2, MATCH=200, NOPS=1001) as machine:
+        machine.run_until(12_000)
+        clock_on = cycles(machine, Kind.REGISTER)[-1]
+        first = (clock_on // 8 + 201) * 8
+        expected = [first + lap * 256 * 8 for lap in range(4)]
+        seen = cycles(machine, Kind.RAISE, TIMER2_COMPA)[:4]
+        yield from lab.differ("matches", expected, seen)
 
 
 def _four_timers(lab: Lab) -> Iterator[str]:

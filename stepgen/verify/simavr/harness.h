@@ -1,4 +1,4 @@
-/* simavr with the chip's own interrupts, 16-bit timers and port writes, and a record of
+/* simavr with the chip's own interrupts, timers 1 to 5 and port writes, and a record of
  * what happened.
  *
  * Cycles. An instruction that starts at c and takes n cycles ends at c + n; PORT, REGISTER,

@@ -52,8 +52,7 @@ struct machine {
     const mcu_facts *facts;
     recorder recorder;
     slot slots[MAX_IOs];
-    timer16 timers[4];
-    uint64_t prescaler_origin;  /* the shared prescaler was zero at this edge */
+    timer16 timers[MOST_TIMERS];
 
     avr_int_vector_t *vectors[MAX_VECTORS];  /* by priority */
     uint8_t vector_count;

@@ -2,16 +2,26 @@
 
 #include <string.h>
 
+/* The 16-bit timers share a prescaler; timer 2 has its own, with more taps. */
+#define SHARED_PRESCALER .restart = 0x01, .prescaler = {0, 1, 8, 64, 256, 1024, 0, 0}
+#define TIMER2(ovf, compa, compb)                                                                 \
+    {                                                                                             \
+        .name = '2', .base = 0xB0, .timsk = 0x70, .tifr = 0x37, .channels = 2,                    \
+        .vector = {ovf, compa, compb}, .is_small = 1, .restart = 0x02,                            \
+        .prescaler = {0, 1, 8, 32, 64, 128, 256, 1024},                                           \
+    }
+
 /* The ATmega1280 is an ATmega2560 with half the flash. */
 #define MEGA_FACTS                                                                                \
     .ports = "ABCDEFGHJKL",                                                                       \
     .pin_address = {0x20, 0x23, 0x26, 0x29, 0x2C, 0x2F, 0x32, 0x100, 0x103, 0x106, 0x109},        \
-    .timer_count = 4,                                                                             \
+    .timer_count = 5,                                                                             \
     .timers = {                                                                                   \
-        {'1', 0x80, 0x6F, 0x36, 3, {20, 17, 18, 19, 0, 16}},                                      \
-        {'3', 0x90, 0x71, 0x38, 3, {35, 32, 33, 34, 0, 31}},                                      \
-        {'4', 0xA0, 0x72, 0x39, 3, {45, 42, 43, 44, 0, 41}},                                      \
-        {'5', 0x120, 0x73, 0x3A, 3, {50, 47, 48, 49, 0, 46}},                                     \
+        {'1', 0x80, 0x6F, 0x36, 3, {20, 17, 18, 19, 0, 16}, SHARED_PRESCALER},                    \
+        {'3', 0x90, 0x71, 0x38, 3, {35, 32, 33, 34, 0, 31}, SHARED_PRESCALER},                    \
+        {'4', 0xA0, 0x72, 0x39, 3, {45, 42, 43, 44, 0, 41}, SHARED_PRESCALER},                    \
+        {'5', 0x120, 0x73, 0x3A, 3, {50, 47, 48, 49, 0, 46}, SHARED_PRESCALER},                   \
+        TIMER2(15, 13, 14),                                                                       \
     }
 
 static const mcu_facts MCUS[] = {
@@ -19,8 +29,11 @@ static const mcu_facts MCUS[] = {
         .name = "atmega328p",
         .ports = "BCD",
         .pin_address = {0x23, 0x26, 0x29},
-        .timer_count = 1,
-        .timers = {{'1', 0x80, 0x6F, 0x36, 2, {13, 11, 12, 0, 0, 10}}},
+        .timer_count = 2,
+        .timers = {
+            {'1', 0x80, 0x6F, 0x36, 2, {13, 11, 12, 0, 0, 10}, SHARED_PRESCALER},
+            TIMER2(9, 7, 8),
+        },
     },
     {.name = "atmega1280", MEGA_FACTS},
     {.name = "atmega2560", MEGA_FACTS},

@@ -5,8 +5,10 @@
 
 #include <stdint.h>
 
-/* Bits of TIFRn and TIMSKn, the same in every 16-bit timer; ICFn is bit 5. */
+/* Bits of TIFRn and TIMSKn, the same in every timer; ICFn, of 16-bit ones, is bit 5. */
 enum { FLAG_TOV = 0, FLAG_OCA = 1, FLAG_OCB = 2, FLAG_OCC = 3, FLAG_ICF = 5, FLAG_BITS = 6 };
+
+enum { MOST_TIMERS = 5, PRESCALERS = 8 };
 
 typedef struct {
     char name;                  /* '1', as simavr names its timer */
@@ -14,6 +16,9 @@ typedef struct {
     uint16_t timsk, tifr;
     uint8_t channels;           /* compare units: 2 (A, B) or 3 (A, B, C) */
     uint8_t vector[FLAG_BITS];  /* by flag bit */
+    uint8_t is_small;           /* 8 bits wide, with fewer registers */
+    uint8_t restart;            /* the bit of GTCCR that restarts its prescaler */
+    uint16_t prescaler[PRESCALERS]; /* by clock select; 0: stopped, or not simulated */
 } timer16_facts;
 
 typedef struct {
@@ -21,7 +26,7 @@ typedef struct {
     const char *ports;          /* letters */
     uint16_t pin_address[12];   /* PINx by letter; DDRx and PORTx are the next two addresses */
     uint8_t timer_count;
-    timer16_facts timers[4];
+    timer16_facts timers[MOST_TIMERS];
 } mcu_facts;
 
 /* The same address on each of them. */

@@ -86,19 +86,15 @@ static void write_mark(machine *m, uint16_t address, uint8_t value)
     m->avr->run_cycle_count = 1; /* return after this instruction */
 }
 
-/* GTCCR: PSRSYNC restarts the prescaler that the 16-bit timers share. */
+/* GTCCR: PSRSYNC restarts the prescaler that the 16-bit timers share, PSRASY that of timer 2. */
 static void write_prescaler(machine *m, uint8_t value)
 {
     if (value & 0x80)
         machine_fail(m, "GTCCR.TSM was set, which is not simulated");
-    if (!(value & 1))
-        return;
     uint64_t edge = registers_write_edge(m->avr);
     for (unsigned i = 0; i < m->facts->timer_count; i++)
-        timer16_sync(&m->timers[i], edge);
-    m->prescaler_origin = edge;
-    for (unsigned i = 0; i < m->facts->timer_count; i++)
-        timer16_schedule(&m->timers[i]);
+        if (value & m->timers[i].facts->restart)
+            timer16_restart(&m->timers[i], edge);
 }
 
 static void act(slot *s, uint16_t address, uint8_t value)
@@ -199,8 +195,7 @@ static void take_timer(machine *m, timer16 *t)
 
 void registers_install(machine *m)
 {
-    static const uint16_t FLAGS[] = {0x35 /* TIFR0 */, 0x37 /* TIFR2 */, 0x3B /* PCIFR */,
-                                     0x3C /* EIFR */};
+    static const uint16_t FLAGS[] = {0x35 /* TIFR0 */, 0x3B /* PCIFR */, 0x3C /* EIFR */};
     const mcu_facts *facts = m->facts;
     for (unsigned i = 0; facts->ports[i]; i++) {
         take(m, facts->pin_address[i], ROLE_PIN);

@@ -4,15 +4,15 @@
 
 #include "machine.h"
 
-#define MAX 0xFFFFu
-
 enum { FIXED, BY_OCRA, BY_ICR };                   /* where TOP comes from */
 enum { NORMAL, CTC, FAST, PHASE, PHASE_FREQUENCY }; /* how it counts */
 
-static const struct {
+typedef struct {
     uint8_t kind, top;
     uint16_t fixed;
-} MODES[16] = {
+} mode;
+
+static const mode MODES[16] = {
     /* Table "Waveform Generation Mode Bit Description"; 13 is reserved. */
     {NORMAL, FIXED, 0xFFFF},      {PHASE, FIXED, 0x00FF},       {PHASE, FIXED, 0x01FF},
     {PHASE, FIXED, 0x03FF},       {CTC, BY_OCRA, 0},            {FAST, FIXED, 0x00FF},
@@ -22,53 +22,65 @@ static const struct {
     {FAST, BY_OCRA, 0},
 };
 
-static unsigned mode_of(const timer16 *t)
+static const mode SMALL_MODES[8] = {
+    /* The same table of timer 2; 4 and 6 are reserved. */
+    {NORMAL, FIXED, 0xFF}, {PHASE, FIXED, 0xFF},  {CTC, BY_OCRA, 0},     {FAST, FIXED, 0xFF},
+    {NORMAL, FIXED, 0xFF}, {PHASE, BY_OCRA, 0},   {NORMAL, FIXED, 0xFF}, {FAST, BY_OCRA, 0},
+};
+
+static const mode *mode_of(const timer16 *t)
 {
-    return (t->control_b >> 1 & 0x0C) | (t->control_a & 0x03);
+    if (t->facts->is_small)
+        return &SMALL_MODES[(t->control_b >> 1 & 0x04) | (t->control_a & 0x03)];
+    return &MODES[(t->control_b >> 1 & 0x0C) | (t->control_a & 0x03)];
+}
+
+static uint32_t max_of(const timer16 *t)
+{
+    return t->facts->is_small ? 0xFF : 0xFFFF;
 }
 
 int timer16_top_is_icr(const timer16 *t)
 {
-    return MODES[mode_of(t)].top == BY_ICR;
+    return mode_of(t)->top == BY_ICR;
 }
 
 int timer16_is_buffered(const timer16 *t)
 {
-    return MODES[mode_of(t)].kind >= FAST;
+    return mode_of(t)->kind >= FAST;
 }
 
 int timer16_turns(const timer16 *t)
 {
-    return MODES[mode_of(t)].kind >= PHASE;
+    return mode_of(t)->kind >= PHASE;
 }
 
 static uint32_t prescaler_of(const timer16 *t)
 {
-    static const uint32_t BY_CLOCK_SELECT[8] = {0, 1, 8, 64, 256, 1024, 0, 0};
-    return BY_CLOCK_SELECT[t->control_b & 7];
+    return t->facts->prescaler[t->control_b & 7];
 }
 
 static uint32_t top_of(const timer16 *t)
 {
-    switch (MODES[mode_of(t)].top) {
+    switch (mode_of(t)->top) {
     case BY_OCRA:
         return t->active[0];
     case BY_ICR:
         return t->capture;
     default:
-        return MODES[mode_of(t)].fixed;
+        return mode_of(t)->fixed;
     }
 }
 
 /* The number of ticks at the edges 1 .. edge. */
 static uint64_t ticks_until(const timer16 *t, uint64_t edge, uint32_t prescaler)
 {
-    return (edge - t->owner->prescaler_origin) / prescaler;
+    return (edge - t->prescaler_origin) / prescaler;
 }
 
 static uint64_t first_tick_after(const timer16 *t, uint64_t edge, uint32_t prescaler)
 {
-    return t->owner->prescaler_origin + (ticks_until(t, edge, prescaler) + 1) * prescaler;
+    return t->prescaler_origin + (ticks_until(t, edge, prescaler) + 1) * prescaler;
 }
 
 static void set_flag(timer16 *t, unsigned bit, uint64_t edge)
@@ -94,9 +106,9 @@ static void load_buffers(timer16 *t)
 /* One tick of a mode that counts up only. */
 static void tick_up(timer16 *t, uint64_t edge, int at_top)
 {
-    unsigned mode = mode_of(t);
-    int fast = MODES[mode].kind == FAST, at_max = t->count == MAX;
-    if (at_top && MODES[mode].top == BY_ICR)
+    const mode *m = mode_of(t);
+    int fast = m->kind == FAST, at_max = t->count == max_of(t);
+    if (at_top && m->top == BY_ICR)
         set_flag(t, FLAG_ICF, edge);
     if (fast ? at_top : at_max)
         set_flag(t, FLAG_TOV, edge);
@@ -112,44 +124,51 @@ static void tick_up(timer16 *t, uint64_t edge, int at_top)
 /* One tick of a mode that counts up to TOP and down to BOTTOM. */
 static void tick_both_ways(timer16 *t, uint64_t edge, int at_top)
 {
-    unsigned mode = mode_of(t);
+    const mode *m = mode_of(t);
     uint32_t top = top_of(t);
     if (t->down && t->count == 0) {
         set_flag(t, FLAG_TOV, edge);
-        if (MODES[mode].kind == PHASE_FREQUENCY)
+        if (m->kind == PHASE_FREQUENCY)
             load_buffers(t);
         t->down = 0;
         t->count = top ? 1 : 0;
     } else if (t->down) {
         t->count--;
     } else if (at_top) {
-        if (MODES[mode].top == BY_ICR)
+        if (m->top == BY_ICR)
             set_flag(t, FLAG_ICF, edge);
         t->down = 1;
         t->count = (uint16_t)(top ? top - 1 : 0);
-        if (MODES[mode].kind == PHASE)
+        if (m->kind == PHASE)
             load_buffers(t);
     } else {
-        t->count = (uint16_t)(t->count + 1); /* beyond TOP: on to MAX and round */
+        t->count = (uint16_t)((t->count + 1) & max_of(t)); /* beyond TOP: on to MAX and round */
     }
 }
 
 static void tick(timer16 *t, uint64_t edge)
 {
-    unsigned mode = mode_of(t);
+    const mode *m = mode_of(t);
     int at_top = t->count == top_of(t);
-    if (MODES[mode].top == BY_OCRA && t->blocked)
+    if (m->top == BY_OCRA && t->blocked)
         at_top = 0;
-    if (MODES[mode].kind == NORMAL)
+    if (m->kind == NORMAL)
         at_top = 0;
     for (unsigned i = 0; i < t->facts->channels; i++)
         if (t->count == t->active[i] && !t->blocked)
             set_flag(t, FLAG_OCA + i, edge);
     t->blocked = 0;
-    if (MODES[mode].kind >= PHASE)
+    if (m->kind >= PHASE)
         tick_both_ways(t, edge, at_top);
     else
         tick_up(t, edge, at_top);
+}
+
+void timer16_restart(timer16 *t, uint64_t edge)
+{
+    timer16_sync(t, edge);
+    t->prescaler_origin = edge;
+    timer16_schedule(t);
 }
 
 /* Ticks that only count, before one that may set a flag, turn or wrap. Of the compare
@@ -157,7 +176,7 @@ static void tick(timer16 *t, uint64_t edge)
 static uint32_t quiet_ticks(const timer16 *t, unsigned channels)
 {
     uint32_t count = t->count, top = top_of(t);
-    uint32_t turn = t->down ? 0 : count <= top ? top : MAX;
+    uint32_t turn = t->down ? 0 : count <= top ? top : max_of(t);
     uint32_t quiet = t->down ? count : turn - count;
     for (unsigned i = 0; i < t->facts->channels; i++) {
         uint32_t match = t->active[i];
@@ -178,7 +197,7 @@ static uint64_t skip_laps(const timer16 *t, uint64_t ticks)
     if (t->owner->avr->data[t->facts->timsk])
         return 0;
     uint32_t top = top_of(t);
-    uint64_t lap = MODES[mode_of(t)].kind >= PHASE ? 2 * (uint64_t)(top ? top : 1) : top + 1;
+    uint64_t lap = mode_of(t)->kind >= PHASE ? 2 * (uint64_t)(top ? top : 1) : top + 1;
     return ticks / lap * lap;
 }
 

@@ -1,12 +1,14 @@
 /* The 16-bit timers of the ATmega328P and ATmega2560, from the chapter "16-bit
- * Timer/Counter with PWM" of their datasheets. They replace simavr's, which differ from
+ * Timer/Counter with PWM" of their datasheets, and their 8-bit timer 2, from "8-bit
+ * Timer/Counter2 with PWM and Asynchronous Operation". They replace simavr's, which differ from
  * the chip in double buffering, prescaler phase, ICRn as TOP and missed compares.
  *
  * Time. A register holds a value from one CPU clock edge to the next; edge c starts CPU
  * cycle c. An instruction of n cycles that starts at c writes at edge c + n and reads what
  * the register holds in its last cycle, c + n - 1. The timer clock ticks at the edges
  * that are multiples of the prescaler since reset, whatever the timer does (the prescaler
- * is shared and runs freely; GTCCR.PSRSYNC restarts it).
+ * of the 16-bit timers is shared, timer 2 has its own; both run freely, and GTCCR.PSRSYNC or
+ * PSRASY restarts them).
  *
  * At a tick the counter leaves its value for the next one, and flags whose condition was
  * that value are set at this same edge: OCFnx at the edge where TCNTn goes from OCRnx to
@@ -24,7 +26,9 @@
  * takes a write at once; in fast PWM it takes the buffer when the counter itself goes
  * to BOTTOM (a TCNTn = 0 by the CPU does not count).
  *
- * Left out: compare outputs (OCnx pins, FOCnx), input capture, external clocks, PRR. Phase
+ * Timer 2 has no ICR, no channel C and no TEMP: its registers are single bytes.
+ *
+ * Left out: compare outputs (OCnx pins, FOCnx), input capture, external clocks, ASSR, PRR. Phase
  * correct modes count as they should, but set TOVn when leaving BOTTOM. */
 
 #ifndef STEPGEN_TIMER16_H
@@ -48,6 +52,7 @@ typedef struct {
     uint16_t active[3];   /* what the compare units use */
     uint16_t buffer[3];   /* what the CPU wrote last */
     uint64_t synced;
+    uint64_t prescaler_origin; /* its prescaler was zero at this edge */
 } timer16;
 
 /* Take the registers of *t* over from simavr. */
@@ -55,6 +60,9 @@ void timer16_install(timer16 *t, struct machine *owner, const timer16_facts *fac
 
 /* Let the counter run up to and including the tick at *edge*, if there is one. */
 void timer16_sync(timer16 *t, uint64_t edge);
+
+/* Its prescaler begins anew at *edge*. */
+void timer16_restart(timer16 *t, uint64_t edge);
 
 /* Tell simavr when the next interrupt may come; after each change. */
 void timer16_schedule(timer16 *t);

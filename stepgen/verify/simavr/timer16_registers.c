@@ -1,4 +1,4 @@
-/* The registers of a 16-bit timer, as the CPU sees them. */
+/* The registers of a timer, as the CPU sees them. */
 
 #include <simavr/avr_timer.h>
 #include <string.h>
@@ -8,6 +8,9 @@
 
 /* Offsets from TCCRnA; OCRnx follow each other, high bytes are odd. */
 enum { TCCRA = 0, TCCRB = 1, TCNTL = 4, TCNTH = 5, ICRL = 6, ICRH = 7, OCRAL = 8, LAST = 13 };
+
+/* The same of timer 2, whose registers follow each other. */
+enum { SMALL_TCNT = 2, SMALL_OCRA = 3, SMALL_LAST = 4 };
 
 static void write_compare(timer16 *t, unsigned channel, uint16_t value)
 {
@@ -27,6 +30,16 @@ static void write_enables(timer16 *t, uint8_t value, uint64_t edge)
     machine_attend(m);
 }
 
+static void write_small(timer16 *t, unsigned offset, uint8_t value)
+{
+    if (offset >= SMALL_OCRA) {
+        write_compare(t, offset - SMALL_OCRA, value);
+    } else {
+        t->count = value;
+        t->blocked = 1;
+    }
+}
+
 static void write_block(timer16 *t, unsigned offset, uint8_t value)
 {
     uint16_t both = (uint16_t)(t->temp << 8 | value);
@@ -34,6 +47,8 @@ static void write_block(timer16 *t, unsigned offset, uint8_t value)
         t->control_a = value;
     } else if (offset == TCCRB) {
         t->control_b = value;
+    } else if (t->facts->is_small) {
+        write_small(t, offset, value);
     } else if (offset == TCNTL) {
         t->count = both;
         t->blocked = 1;
@@ -67,6 +82,8 @@ uint8_t timer16_peek(timer16 *t, uint16_t address, uint64_t edge)
     if (address == t->facts->tifr || address == t->facts->timsk)
         return t->owner->avr->data[address];
     unsigned offset = address - t->facts->base, shift = offset & 1 ? 8 : 0;
+    if (t->facts->is_small && offset >= SMALL_TCNT)
+        return (uint8_t)(offset == SMALL_TCNT ? t->count : t->buffer[offset - SMALL_OCRA]);
     switch (offset) {
     case TCCRA:
         return t->control_a;
@@ -86,6 +103,8 @@ uint8_t timer16_peek(timer16 *t, uint16_t address, uint64_t edge)
 uint8_t timer16_read(timer16 *t, uint16_t address, uint64_t edge)
 {
     unsigned offset = address - t->facts->base;
+    if (t->facts->is_small)
+        return timer16_peek(t, address, edge);
     int latched = address >= t->facts->base && (offset == TCNTH || offset == ICRH);
     uint8_t value = latched ? t->temp : timer16_peek(t, address, edge);
     if (offset == TCNTL || offset == ICRL)
@@ -97,12 +116,14 @@ int timer16_owns(const timer16 *t, uint16_t address)
 {
     const timer16_facts *f = t->facts;
     return address == f->timsk || address == f->tifr ||
-           (address >= f->base && address <= f->base + LAST);
+           (address >= f->base && address <= f->base + (f->is_small ? SMALL_LAST : LAST));
 }
 
 void timer16_install(timer16 *t, machine *owner, const timer16_facts *facts)
 {
     *t = (timer16){.owner = owner, .facts = facts};
+    if (facts->is_small)
+        return;
     for (avr_io_t *io = owner->avr->io_port; io; io = io->next) {
         avr_timer_t *theirs = (avr_timer_t *)io;
         /* simavr still follows its input capture pin: this makes it think ICRn is TOP. */

@@ -1,0 +1,47 @@
+"""
+Compare: registers and bits of the timer that runs through.
+"""
+
+from dataclasses import dataclass
+
+from stepgen.plan.model import MotorPlan
+
+
+@dataclass(frozen=True)
+class CompareView:
+    """
+    Names of a timer's registers and bits; *clock* selects the prescaler of 8.
+    """
+
+    number: int
+    struct_prefix: str
+    tccra: str
+    tccrb: str
+    tcnt: str
+    ocra: str
+    timsk: str
+    tifr: str
+    ocf: str
+    ocie: str
+    clock: str
+
+
+def view(motor: MotorPlan) -> CompareView:
+    """
+    Return what the partial prints of the timer of *motor*.
+    """
+    timer = motor.timing.timer
+    n = timer.number
+    return CompareView(
+        number=n,
+        struct_prefix="Compare",
+        tccra=timer.tccra.name,
+        tccrb=timer.tccrb.name,
+        tcnt=timer.tcnt.name,
+        ocra=timer.ocra.name,
+        timsk=timer.timsk.name,
+        tifr=timer.tifr.name,
+        ocf=f"OCF{n}A",
+        ocie=f"OCIE{n}A",
+        clock=f"CS{n}1",
+    )

@@ -1,0 +1,128 @@
+"""
+Timing compare: which timer it takes, how fast it may be, and what it does on the way to a step.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from stepgen.errors import StepgenError
+from stepgen.plan.instructions import Gate
+from stepgen.plan.model import Plan
+from stepgen.plan.planner import make_plan
+from stepgen.plan.timings.compare import LONGEST_WAIT_CYCLES, shortest_period_cycles
+from stepgen.spec import load_spec
+
+Planner = Callable[[str], Plan]
+SHIELD = "{drive: motor-shield, timing: compare}"
+
+
+@pytest.fixture
+def planned(tmp_path: Path) -> Planner:
+    """
+    Return a function that plans a spec from its text.
+    """
+
+    def plan(text: str) -> Plan:
+        path = tmp_path / "spec.yaml"
+        path.write_text(f"library: Mine\n{text}", encoding="utf-8")
+        return make_plan(load_spec(path))
+
+    return plan
+
+
+@pytest.mark.parametrize("timing", ["compare", "{kind: compare, timer: 2}"])
+def test_it_takes_timer_2_beside_servo(planned: Planner, timing: str) -> None:
+    """
+    The way out of system 1's weakness 1: Servo has timer 1, the motor timer 2.
+    """
+    text = f"board: uno\nuses: [Servo]\nmotors:\n  m: {{drive: motor-shield, timing: {timing}}}\n"
+
+    (motor,) = planned(text).motors
+
+    assert motor.timing.timer.number == 2
+    assert motor.timing.vector == "TIMER2_COMPA_vect"
+
+
+def test_a_shield_beside_pwm_on_its_timer_lacks_both(planned: Planner) -> None:
+    """
+    D3 is an enable of the shield and PWM of timer 2: pin and timer are reported.
+    """
+    with pytest.raises(StepgenError) as error:
+        planned(f"board: uno\nuses: [analogWrite D3]\nmotors:\n  m: {SHIELD}\n")
+
+    pin, timer = error.value.faults
+    assert pin.reason.startswith("pin D3 (PD3) is taken by analogWrite")
+    assert timer.reason.startswith("timer 2 is taken by analogWrite on D3")
+
+
+def test_its_shortest_period_is_a_lap_for_the_whole_library(planned: Planner) -> None:
+    """
+    256 ticks of 8 clocks; the constants of a library are there once, so all its motors share it.
+    """
+    other = "{drive: {kind: four-wire, pins: [D4, D5, D6, D7]}}"
+    plan = planned(f"board: uno\nmotors:\n  a: {SHIELD}\n  b: {other}\n")
+
+    assert plan.minimum_period_cycles == 256 * 8
+    assert plan.largest_period_cycles == 65_535 * 1024
+
+
+@pytest.mark.parametrize(
+    ("own", "interrupts", "masked", "fits"),
+    [
+        # Nothing runs over the 1024 cycles to the next match: it waits 969 cycles, or 970.
+        (200, 500, 469, True),
+        (200, 500, 470, False),
+        # 524 + 600 run 100 over: the next match waits for those, for a call and the others.
+        (600, 345, 524, True),
+        (600, 346, 524, False),
+    ],
+)
+def test_no_match_waits_longer_than_allowed(
+    own: int, interrupts: int, masked: int, *, fits: bool
+) -> None:
+    """
+    OCR2A must be moved before the counter is at its new value, 128 ticks of 8 clocks on.
+    """
+    assert LONGEST_WAIT_CYCLES == 970
+    assert shortest_period_cycles(own, interrupts, masked) == (2048 if fits else None)
+
+
+def _walk(gate: Gate, taken: dict[str, bool]) -> tuple[int, bool]:
+    """
+    Return the cycles through *gate*, where *taken* says which branches are, and if to the step.
+
+    By the instruction set manual: a branch that is taken and a skip cost one cycle more.
+    """
+    lines = list(gate.instructions)
+    labels = {line.label: index for index, line in enumerate(lines) if line.label}
+    place = cycles = 0
+    while place < len(lines):
+        name, _, rest = lines[place].text.partition(" ")
+        cycles += lines[place].cycles
+        if name == "reti":
+            return cycles, False
+        if name == "rjmp" or taken.get(name, False):
+            cycles += name != "rjmp"
+            place = place + 2 if name == "sbrs" else labels[rest.strip()[0]]
+        else:
+            place += 1
+    return cycles, True
+
+
+def test_the_ways_through_its_gate_take_what_is_stated(planned: Planner) -> None:
+    """
+    A lap, 256 laps, the last lap and the step, followed instruction by instruction.
+    """
+    (motor,) = planned(f"board: uno\nmotors:\n  m: {SHIELD}\n").motors
+    gate = motor.gate
+    lap = {"breq": False}
+    laps256 = {"breq": True, "brpl": True}
+    last = {"breq": True, "brpl": False, "sbrs": True}
+    step = {"breq": True, "brpl": False, "sbrs": False}
+
+    assert _walk(gate, lap) == (gate.lap_cycles[0], False)
+    assert _walk(gate, last) == (gate.lap_cycles[1], False)
+    assert _walk(gate, laps256)[0] < gate.lap_cycles[1]
+    assert _walk(gate, step) == (gate.step_cycles, True)
