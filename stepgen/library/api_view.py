@@ -43,9 +43,13 @@ _CONTROL_BITS = (
     _Name("MOTOR_CTRL_DIRECTION", 0x01, "backward through the step sequence"),
 )
 _STATUS_BITS = (
-    _Name("MOTOR_STAT_FAULT", 0x01, "a call was refused; a start clears it"),
+    _Name(
+        "MOTOR_STAT_FAULT",
+        0x01,
+        "a call was refused, or an event left the range",
+    ),
     _Name("MOTOR_STAT_FAULT_CALLED", 0x02, "and its callback was told", _CHANGING),
-    _Name("MOTOR_STAT_TIMER_DIV_ERROR", 0x04, "because no timer setting has that speed"),
+    _Name("MOTOR_STAT_TIMER_DIV_ERROR", 0x04, "because a speed is out of range"),
     _Name("MOTOR_STAT_TIMER_DIV_CALLED", 0x08, "and the callback was told", _CHANGING),
     _Name("MOTOR_STAT_REACHED", 0x10, "at the end point, or stopped"),
     _Name("MOTOR_STAT_REACH_CALLED", 0x20, "and its callback was told", _CHANGING),
@@ -57,7 +61,7 @@ _CODES = (
     _Name(
         "MOTOR_ERROR_CONTROL",
         -3,
-        "a control bit that this library does not have",
+        "a control bit that this motor does not have",
         frozenset({"constant"}),
     ),
     _Name("MOTOR_ERROR_UPDATE", -4, "modification, interval or count of events is 0", _CHANGING),

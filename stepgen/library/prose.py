@@ -133,7 +133,9 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
     Return trigger, cycles and effects of the step interrupt, as lines of a comment.
     """
     path = motor.hot_path
-    ports = listed(sorted({wire.pin.bit.port for wire in motor.drive.wires}))
+    switched = motor.drive.released if motor.releases_at_rest else ()
+    ports = listed(sorted({wire.pin.bit.port for wire in (*motor.drive.wires, *switched)}))
+    clock = f", {path.clock_cycles} with a look at the clock" if motor.motion.watches_clock else ""
     timing = motor.timing
     laps = "".join(
         f" Between two steps it counts laps of the timer, {cycles[0]} cycles each, and "
@@ -143,8 +145,8 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
     )
     return comment_lines(
         f"Timer {timing.timer.number} {timing.event}: one step, {path.usual_cycles} cycles from "
-        f"the interrupt's response to RETI; at most {motor.isr_bound_cycles} when it goes on in "
-        f"{motor.handler}. The wires change {path.edge_cycles} cycles after {timing.instant} "
+        f"the interrupt's response to RETI{clock}; at most {motor.isr_bound_cycles} when it goes "
+        f"on in {motor.handler}. The wires change {path.edge_cycles} cycles after {timing.instant} "
         f"({path.boundary_edge_cycles} before a boundary).{laps} It writes port {ports} and "
         "nothing else that the sketch can see. Behind each instruction stand its cycles."
     )

@@ -54,6 +54,20 @@ def _of_motor(motor: int, plan: Plan) -> Iterator[Scenario]:
         read,
     )
     yield scenario(
+        "an event that is due with the last step",
+        Loop.BUSY,
+        callbacks,
+        speed(_BY_ISR | _STEPS | _FASTER, 4_000, 10, 5_000, 10, 1),
+        *checks(3, 2),
+    )
+    yield scenario(
+        "a millisecond limit that has passed when the sketch looks for an event",
+        Loop.BUSY,
+        callbacks,
+        speed(_DRIVE | Control.ENDPOINT_MILLIS, 60_000_000, 20, 60_000_000, 25, 1),
+        *checks(2, 30),
+    )
+    yield scenario(
         "recorded run 2, speeding up",
         Loop.SLEEP,
         speed(_BY_ISR | _POWER | _FASTER, 4_800_000, 0, 2_385_000, 1_000, 11),

@@ -53,10 +53,11 @@ def random_scenario(seed: int, plan: Plan) -> Scenario:
     """
     random = Random(seed)  # noqa: S311 - repeatable, not secret
     motors = len(plan.motors)
-    weights = {**WEIGHTS, **CHANGING_WEIGHTS} if plan.motors[0].motion.watches_clock else WEIGHTS
     actions: list[Action] = []
     for _ in range(COMMANDS):
         motor = random.randrange(motors)
+        changes = plan.motors[motor].motion.watches_clock
+        weights = {**WEIGHTS, **CHANGING_WEIGHTS} if changes else WEIGHTS
         kind = random.choices(list(weights), weights=list(weights.values()))[0]
         control = random.choice([0x80, 0x81, 0x84, 0x85, 0x80 | random.randrange(128), 0])
         top = random.choice([0, random.randrange(600, 3_000), int(2 ** random.uniform(9, 21))])

@@ -231,10 +231,10 @@ SHARED void motorTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 867 when it
-// goes on in __vector_motor_boundary. The wires change 38 cycles after the timer wraps (62 before a
-// boundary). It writes port D and nothing else that the sketch can see. Behind each instruction
-// stand its cycles.
+// Timer 1 overflow: one step, 50 cycles from the interrupt's response to RETI, 69 with a look at
+// the clock; at most 867 when it goes on in __vector_motor_boundary. The wires change 38 cycles
+// after the timer wraps (62 before a boundary). It writes port D and nothing else that the sketch
+// can see. Behind each instruction stand its cycles.
 ISR(TIMER1_OVF_vect, ISR_NAKED) {
   asm volatile(
       "   push  r24                      \n"  // 2

@@ -31,15 +31,15 @@ constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in millisecond
 constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
 
 // Status bits of the ReadStatus functions.
-constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // a call was refused; a start clears it
-constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;  // because no timer setting has that speed
+constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // a call was refused, or an event left the range
+constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;  // because a speed is out of range
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;          // at the end point, or stopped
 constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;       // running at a speed that stays
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed, above 0 a warning.
 constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // below MOTOR_MIN_TOP
 constexpr int8_t MOTOR_ERROR_TOO_SLOW = -2;   // above MOTOR_MAX_TOP
-constexpr int8_t MOTOR_ERROR_CONTROL = -3;    // a control bit that this library does not have
+constexpr int8_t MOTOR_ERROR_CONTROL = -3;    // a control bit that this motor does not have
 constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops
 

@@ -199,11 +199,11 @@ INLINE void motorRunTimer() {
   TIMSK2 = _BV(OCIE2A);
 }
 
-// Timer 2 compare match A: one step, 89 cycles from the interrupt's response to RETI; at most 736
-// when it goes on in __vector_motor_boundary. The wires change 77 cycles after the match (101
-// before a boundary). Between two steps it counts laps of the timer, 25 cycles each, and 50 for the
-// last of them. It writes port D and nothing else that the sketch can see. Behind each instruction
-// stand its cycles.
+// Timer 2 compare match A: one step, 89 cycles from the interrupt's response to RETI, 108 with a
+// look at the clock; at most 736 when it goes on in __vector_motor_boundary. The wires change 77
+// cycles after the match (101 before a boundary). Between two steps it counts laps of the timer, 25
+// cycles each, and 50 for the last of them. It writes port D and nothing else that the sketch can
+// see. Behind each instruction stand its cycles.
 ISR(TIMER2_COMPA_vect, ISR_NAKED) {
   asm volatile(
       "   push  r24                      \n"  // 2

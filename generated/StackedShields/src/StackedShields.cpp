@@ -562,8 +562,8 @@ INLINE void upperTakeOver() {
 
 // Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 233 when it
 // goes on in __vector_upper_boundary. The wires change 41 cycles after the timer wraps (46 before a
-// boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
-// stand its cycles.
+// boundary). It writes port B, E and H and nothing else that the sketch can see. Behind each
+// instruction stand its cycles.
 ISR(TIMER3_OVF_vect, ISR_NAKED) {
   asm volatile(
       "   push  r24                      \n"  // 2

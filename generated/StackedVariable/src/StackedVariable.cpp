@@ -247,8 +247,8 @@ INLINE void lowerTakeOver() {
 
 // Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 227 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
-// boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
-// stand its cycles.
+// boundary). It writes port B and E and nothing else that the sketch can see. Behind each
+// instruction stand its cycles.
 ISR(TIMER4_OVF_vect, ISR_NAKED) {
   asm volatile(
       "   push  r24                      \n"  // 2
@@ -596,10 +596,10 @@ SHARED void upperTakeOver() {
   if (!(TIFR5 & _BV(TOV5))) next.select = 0;
 }
 
-// Timer 5 overflow: one step, 58 cycles from the interrupt's response to RETI; at most 874 when it
-// goes on in __vector_upper_boundary. The wires change 45 cycles after the timer wraps (69 before a
-// boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
-// stand its cycles.
+// Timer 5 overflow: one step, 58 cycles from the interrupt's response to RETI, 77 with a look at
+// the clock; at most 874 when it goes on in __vector_upper_boundary. The wires change 45 cycles
+// after the timer wraps (69 before a boundary). It writes port B, E and H and nothing else that the
+// sketch can see. Behind each instruction stand its cycles.
 ISR(TIMER5_OVF_vect, ISR_NAKED) {
   asm volatile(
       "   push  r24                      \n"  // 2

@@ -43,9 +43,9 @@ constexpr uint8_t MOTOR_CTRL_SLOWER = 0x00;           // they lengthen it: for r
 constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
 
 // Status bits of the ReadStatus functions.
-constexpr uint8_t MOTOR_STAT_FAULT = 0x01;             // a call was refused; a start clears it
+constexpr uint8_t MOTOR_STAT_FAULT = 0x01;             // a call was refused, or an event left the range
 constexpr uint8_t MOTOR_STAT_FAULT_CALLED = 0x02;      // and its callback was told
-constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;   // because no timer setting has that speed
+constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;   // because a speed is out of range
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_CALLED = 0x08;  // and the callback was told
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;           // at the end point, or stopped
 constexpr uint8_t MOTOR_STAT_REACH_CALLED = 0x20;      // and its callback was told
@@ -54,7 +54,7 @@ constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;        // running at a speed tha
 // What the functions return: 0 is fine, below 0 refused and nothing changed, above 0 a warning.
 constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // below MOTOR_MIN_TOP
 constexpr int8_t MOTOR_ERROR_TOO_SLOW = -2;   // above MOTOR_MAX_TOP
-constexpr int8_t MOTOR_ERROR_CONTROL = -3;    // a control bit that this library does not have
+constexpr int8_t MOTOR_ERROR_CONTROL = -3;    // a control bit that this motor does not have
 constexpr int8_t MOTOR_ERROR_UPDATE = -4;     // modification, interval or count of events is 0
 constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops

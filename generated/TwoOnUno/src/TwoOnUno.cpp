@@ -227,8 +227,8 @@ INLINE void leftRunTimer() {
 // Timer 2 compare match A: one step, 85 cycles from the interrupt's response to RETI; at most 227
 // when it goes on in __vector_left_boundary. The wires change 73 cycles after the match (78 before
 // a boundary). Between two steps it counts laps of the timer, 25 cycles each, and 50 for the last
-// of them. It writes port B and nothing else that the sketch can see. Behind each instruction stand
-// its cycles.
+// of them. It writes port B and D and nothing else that the sketch can see. Behind each instruction
+// stand its cycles.
 ISR(TIMER2_COMPA_vect, ISR_NAKED) {
   asm volatile(
       "   push  r24                      \n"  // 2

@@ -38,9 +38,9 @@ constexpr uint8_t MOTOR_CTRL_SLOWER = 0x00;           // they lengthen it: for r
 constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
 
 // Status bits of the ReadStatus functions.
-constexpr uint8_t MOTOR_STAT_FAULT = 0x01;             // a call was refused; a start clears it
+constexpr uint8_t MOTOR_STAT_FAULT = 0x01;             // a call was refused, or an event left the range
 constexpr uint8_t MOTOR_STAT_FAULT_CALLED = 0x02;      // and its callback was told
-constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;   // because no timer setting has that speed
+constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;   // because a speed is out of range
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_CALLED = 0x08;  // and the callback was told
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;           // at the end point, or stopped
 constexpr uint8_t MOTOR_STAT_REACH_CALLED = 0x20;      // and its callback was told
