@@ -46,7 +46,7 @@ _STATUS_BITS = (
     _Name(
         "MOTOR_STAT_FAULT",
         0x01,
-        "a call was refused, or an event left the range",
+        "something was refused; a start clears it",
     ),
     _Name("MOTOR_STAT_FAULT_CALLED", 0x02, "and its callback was told", _CHANGING),
     _Name("MOTOR_STAT_TIMER_DIV_ERROR", 0x04, "because a speed is out of range"),

@@ -31,7 +31,7 @@ constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in millisecond
 constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
 
 // Status bits of the ReadStatus functions.
-constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // a call was refused, or an event left the range
+constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // something was refused; a start clears it
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;  // because a speed is out of range
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;          // at the end point, or stopped
 constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;       // running at a speed that stays

@@ -38,7 +38,7 @@ constexpr uint8_t MOTOR_CTRL_SLOWER = 0x00;           // they lengthen it: for r
 constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
 
 // Status bits of the ReadStatus functions.
-constexpr uint8_t MOTOR_STAT_FAULT = 0x01;             // a call was refused, or an event left the range
+constexpr uint8_t MOTOR_STAT_FAULT = 0x01;             // something was refused; a start clears it
 constexpr uint8_t MOTOR_STAT_FAULT_CALLED = 0x02;      // and its callback was told
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;   // because a speed is out of range
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_CALLED = 0x08;  // and the callback was told
