@@ -35,18 +35,6 @@ INLINE T &near(T &object) {
 // What millis() returns, kept by the Arduino core.
 extern "C" volatile unsigned long timer0_millis;
 
-// Its lower 16 bits. Only while interrupts are off.
-INLINE uint16_t millisCount() {
-  const volatile uint8_t *const bytes = reinterpret_cast<const volatile uint8_t *>(&timer0_millis);
-  union {
-    uint8_t bytes[2];
-    uint16_t count;
-  } low;
-  low.bytes[0] = bytes[0];
-  low.bytes[1] = bytes[1];
-  return low.count;
-}
-
 // What a motor is doing.
 constexpr uint8_t kThink = 0x01;    // look at the clock before the step; the interrupt's bit 0
 constexpr uint8_t kCoast = 0x02;    // the last step is made, the coils are still on
