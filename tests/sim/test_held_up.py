@@ -2,19 +2,15 @@
 Sketches that hold interrupts up, or change their callbacks from within one.
 """
 
+from collections.abc import Callable
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 
-from stepgen import api
-from stepgen.library.render import render_library
 from stepgen.verify.events import Kind
 from stepgen.verify.simavr import Machine
-from stepgen.verify.toolchain import Target, build, default_compiler
 
-SPECS = Path(__file__).parents[2] / "specs"
-F_CPU_HZ = 16_000_000
+MachineWith = Callable[[str, str], Machine]
 PORTB = 0x25
 # A change of prescaler is waiting for the step at the end of the interval; then interrupts are off
 # from before that step until shortly before the old setting would end a second interval.
@@ -54,34 +50,19 @@ void loop() {}
 """
 
 
-def machine_with(stem: str, sketch: str, folder: Path) -> Machine:
-    """
-    Return an Uno with *sketch* and the library of a spec in its flash.
-    """
-    plan = api.plan(SPECS / f"{stem}.yaml")
-    for path, text in {**render_library(plan, ""), "sketch.cpp": sketch}.items():
-        file = folder / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
-    sources = [folder / "sketch.cpp", *(folder / "src").glob("*.cpp")]
-    target = Target.from_fqbn(plan.board.fqbn)
-    made = build(sources, [folder / "src"], target, default_compiler(), folder / "build")
-    return Machine(made.elf, mcu=plan.board.mcu.name, f_cpu_hz=F_CPU_HZ)
-
-
 @pytest.mark.parametrize(
     ("stem", "library"),
     [("uno_motor_shield", "ShieldMotor"), ("uno_variable_speed", "VariableSpeed")],
 )
 @pytest.mark.parametrize("until", [19_700, 19_850, 19_900, 19_930, 19_980])
 def test_a_change_that_is_held_up_makes_no_early_step(
-    stem: str, library: str, until: int, tmp_path: Path
+    stem: str, library: str, until: int, machine_with: MachineWith
 ) -> None:
     """
     The setting that is replaced ends no interval any more: the next step is 200 000 clocks later.
     """
     sketch = HELD_UP.format(library=library, until=until)
-    with machine_with(stem, sketch, tmp_path) as machine:
+    with machine_with(stem, sketch) as machine:
         machine.run_until(2_000_000)
         events = machine.events()
         moved = events[(events["kind"] == Kind.PORT) & (events["source"] == PORTB)]
@@ -92,9 +73,9 @@ def test_a_change_that_is_held_up_makes_no_early_step(
     assert 38_000 < gaps[-5] < 41_000
 
 
-def test_a_callback_may_take_the_other_one_away(tmp_path: Path) -> None:
+def test_a_callback_may_take_the_other_one_away(machine_with: MachineWith) -> None:
     """
     A callback that is to be made is made, though the one before it set it to null.
     """
-    with machine_with("uno_variable_speed", CALLBACKS, tmp_path) as machine:
+    with machine_with("uno_variable_speed", CALLBACKS) as machine:
         assert machine.run_until_mark(1, limit_cycles=1_000_000)

@@ -5,7 +5,7 @@ Source: system 1, chapters 9 and 10.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
 from statistics import mean
@@ -16,10 +16,10 @@ from stepgen import api
 from stepgen.library.render import render_library
 from stepgen.verify.events import Kind
 from stepgen.verify.simavr import Machine
-from stepgen.verify.toolchain import Target, build, default_compiler
 
 SPECS = Path(__file__).parents[2] / "specs"
 F_CPU_HZ = 16_000_000
+MachineWith = Callable[[str, str], Machine]
 LABELS = (
     "motor_ctrl_irq",
     "motor_timer_top32virt_irq",
@@ -100,19 +100,11 @@ RECORDED = (
 )
 
 
-def printed(stem: str, sketch: str, folder: Path, seconds: float) -> str:
+def printed(machine: Machine, seconds: float) -> str:
     """
-    Build *sketch* with the library of a spec and return what it prints in so many seconds.
+    Return what the sketch in *machine* prints in so many seconds.
     """
-    plan = api.plan(SPECS / f"{stem}.yaml")
-    for path, text in {**render_library(plan, ""), "sketch.cpp": sketch}.items():
-        file = folder / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
-    sources = [folder / "sketch.cpp", *(folder / "src").glob("*.cpp")]
-    target = Target.from_fqbn(plan.board.fqbn)
-    made = build(sources, [folder / "src"], target, default_compiler(), folder / "build")
-    with Machine(made.elf, mcu=plan.board.mcu.name, f_cpu_hz=F_CPU_HZ) as machine:
+    with machine:
         machine.run_until(round(seconds * F_CPU_HZ))
         events = machine.events()
         sent = events[events["kind"] == Kind.UART]
@@ -131,12 +123,11 @@ def dumps(text: str) -> Iterator[dict[str, int]]:
 
 
 @pytest.fixture(scope="module")
-def case_1(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, int]]:
+def case_1(machine_with: MachineWith) -> list[dict[str, int]]:
     """
     Return what the sketch of case 1 prints, dump by dump.
     """
-    folder = tmp_path_factory.mktemp("case1")
-    return list(dumps(printed("uno_debug", CASE_1, folder, seconds=14.5)))
+    return list(dumps(printed(machine_with("uno_debug", CASE_1), seconds=14.5)))
 
 
 def test_the_dump_shows_the_recorded_state(case_1: list[dict[str, int]]) -> None:
@@ -183,14 +174,14 @@ def test_without_the_option_there_is_nothing_of_it() -> None:
         assert word not in files["src/VariableSpeed.h"] + files["src/VariableSpeed.cpp"]
 
 
-def test_a_free_running_counter_shows_what_a_step_takes(tmp_path: Path) -> None:
+def test_a_free_running_counter_shows_what_a_step_takes(machine_with: MachineWith) -> None:
     """
     Case 3: the counter of loop() says that a step takes at most 75 cycles; the source took 220.
     """
     stays_slow = CASE_3.replace("2385000UL, 1000, 11", "1UL, 1000, 60000")
 
     def counts_a_second(sketch: str) -> float:
-        text = printed("uno_variable_speed", sketch, tmp_path / str(hash(sketch)), seconds=27.5)
+        text = printed(machine_with("uno_variable_speed", sketch), seconds=27.5)
         return mean(int(line) for line in text.split()[12:26])
 
     slow, fast = counts_a_second(stays_slow), counts_a_second(CASE_3)  # 3.3 and 494.9 steps/s

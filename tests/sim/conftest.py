@@ -1,0 +1,38 @@
+"""
+Sketches of a test's own, with the library of a spec.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from stepgen import api
+from stepgen.library.render import render_library
+from stepgen.verify.simavr import Machine
+from stepgen.verify.toolchain import Target, build, default_compiler
+
+SPECS = Path(__file__).parents[2] / "specs"
+
+MachineWith = Callable[[str, str], Machine]
+
+
+@pytest.fixture(scope="session")
+def machine_with(tmp_path_factory: pytest.TempPathFactory) -> MachineWith:
+    """
+    Return a function that puts a sketch, with the library of a spec, into a simulated chip.
+    """
+
+    def make(stem: str, sketch: str) -> Machine:
+        folder = tmp_path_factory.mktemp(stem)
+        plan = api.plan(SPECS / f"{stem}.yaml")
+        for path, text in {**render_library(plan, ""), "sketch.cpp": sketch}.items():
+            file = folder / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+        sources = [folder / "sketch.cpp", *(folder / "src").glob("*.cpp")]
+        target = Target.from_fqbn(plan.board.fqbn)
+        made = build(sources, [folder / "src"], target, default_compiler(), folder / "build")
+        return Machine(made.elf, mcu=plan.board.mcu.name, f_cpu_hz=plan.board.f_cpu_hz)
+
+    return make
