@@ -101,6 +101,8 @@ void motorShieldInit();
 //   timerUpd_ms        milliseconds between two events, or steps with MOTOR_CTRL_UPDATE_STEPS
 //   modCounts          how many events there are
 //
+// `stepgen plan --from 6 --to 800 --time 7.25` works them out and prints the call.
+//
 // An event is applied by the first step after it is due (MOTOR_CTRL_IRQ_TIMING), or by the next
 // motorTimerUpdateCheck(); one at a time. It acts from the following interval. At the end of the
 // range, MOTOR_MIN_TOP or MOTOR_MAX_TOP, events stop with a fault; the motor runs on.
