@@ -22,6 +22,9 @@ from stepgen.library.write import (
     zip_library,
     zip_refusals,
 )
+from stepgen.lint import LintReport, Rule
+from stepgen.lint import lint as lint_folder
+from stepgen.lint.linter import NOT_CHECKED, RULES
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
 from stepgen.spec import LoadedSpec, load_spec
@@ -164,6 +167,30 @@ def check(
             else check_library(library.files, target)
         )
     return found
+
+
+def lint(path: Path) -> LintReport:
+    """
+    Check the library folder *path* against the rules of the Arduino library manager.
+
+    Raises:
+        StepgenError: It is no folder, or cannot be read.
+    """
+    return lint_folder(path)
+
+
+def lint_rules() -> tuple[Rule, ...]:
+    """
+    Return every rule of `lint`, in the order of their names.
+    """
+    return RULES
+
+
+def lint_not_checked() -> tuple[tuple[str, str], ...]:
+    """
+    Return the rules of Arduino Lint that `lint` cannot check, and what they are about.
+    """
+    return NOT_CHECKED
 
 
 def verify(

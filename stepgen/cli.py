@@ -15,7 +15,7 @@ import typer
 from typer.core import TyperGroup
 
 from stepgen import __version__
-from stepgen.commands import boards, check, doctor, generate, matrix, plan, simulate, verify
+from stepgen.commands import boards, check, doctor, generate, lint, matrix, plan, simulate, verify
 from stepgen.commands.report import WRONG, report_faults
 from stepgen.errors import Fault, StepgenError
 
@@ -92,6 +92,7 @@ app.command("boards", epilog=boards.EXAMPLE)(boards.boards)
 app.command("check", epilog=check.EXAMPLE)(check.check)
 app.command("plan", epilog=plan.EXAMPLE)(plan.plan)
 app.command("generate", epilog=generate.EXAMPLE)(generate.generate)
+app.command("lint", epilog=lint.EXAMPLE)(lint.lint)
 app.command("simulate", epilog=simulate.EXAMPLE)(simulate.simulate)
 app.command("verify", epilog=verify.EXAMPLE)(verify.verify)
 app.command("matrix", epilog=matrix.EXAMPLE)(matrix.matrix)

@@ -26,6 +26,9 @@ _FIELD_REASONS = {
     ("string_pattern_mismatch", "version"): (
         "is no version; write three numbers in quotes, such as 1.0.0"
     ),
+    ("string_pattern_mismatch", "url"): (
+        "is no address of a page; write one such as https://example.org/motor"
+    ),
     ("string_type", "version"): "is no version; write three numbers in quotes, such as 1.0.0",
     ("string_type", "[key]"): "is no name; write one that begins with a letter, such as pan",
     ("missing", "pins"): "pins is missing; add `pins: [...]`, those of the coils A, B, C and D",

@@ -52,6 +52,9 @@ _CATEGORIES = Literal[
 Line = Annotated[str, StringConstraints(strip_whitespace=True, pattern=r"^[^\x00-\x1f\x7f]*$")]
 """One line of text: no control characters, so that it cannot end a comment or a property."""
 
+Address = Annotated[Line, StringConstraints(pattern=r"^https?://[^\s/]+(/\S*)?$")]
+"""The address of a page."""
+
 Version = Annotated[str, StringConstraints(pattern=r"^\d+\.\d+\.\d+$")]
 
 
@@ -66,7 +69,7 @@ class Library(SpecModel):
     maintainer: Line | None = None
     sentence: Line | None = None
     paragraph: Line | None = None
-    url: Line = ""
+    url: Address = "https://docs.arduino.cc/libraries/"
     category: _CATEGORIES = "Device Control"
 
     @model_validator(mode="after")

@@ -18,9 +18,11 @@ MAY_IMPORT = {
     "plan": FACTS | {"spec", "devices"},
     "reference": FACTS | {"spec", "devices"},
     "library": FACTS | {"spec", "devices", "plan"},
+    "lint": FACTS,
     "verify": FACTS | {"spec", "devices", "plan", "reference", "library"},
-    "api": FACTS | {"spec", "devices", "plan", "library", "verify", "reference"},
-    "commands": FACTS | {"spec", "devices", "plan", "library", "verify", "reference", "api"},
+    "api": FACTS | {"spec", "devices", "plan", "library", "lint", "verify", "reference"},
+    "commands": FACTS
+    | {"spec", "devices", "plan", "library", "lint", "verify", "reference", "api"},
     "cli": FACTS | {"commands", "api"},
     "__main__": {"cli"},
 }
