@@ -27,6 +27,7 @@ from stepgen.lint import lint as lint_folder
 from stepgen.lint.linter import NOT_CHECKED, RULES
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
+from stepgen.schema import json_schema as _json_schema
 from stepgen.spec import LoadedSpec, load_spec
 
 if TYPE_CHECKING:
@@ -167,6 +168,13 @@ def check(
             else check_library(library.files, target)
         )
     return found
+
+
+def json_schema() -> dict[str, Any]:
+    """
+    Return the JSON Schema of a spec, for editors; every valid spec fits it.
+    """
+    return _json_schema()
 
 
 def lint(path: Path) -> LintReport:

@@ -15,7 +15,18 @@ import typer
 from typer.core import TyperGroup
 
 from stepgen import __version__
-from stepgen.commands import boards, check, doctor, generate, lint, matrix, plan, simulate, verify
+from stepgen.commands import (
+    boards,
+    check,
+    doctor,
+    generate,
+    lint,
+    matrix,
+    plan,
+    schema,
+    simulate,
+    verify,
+)
 from stepgen.commands.report import WRONG, report_faults
 from stepgen.errors import Fault, StepgenError
 
@@ -93,6 +104,7 @@ app.command("check", epilog=check.EXAMPLE)(check.check)
 app.command("plan", epilog=plan.EXAMPLE)(plan.plan)
 app.command("generate", epilog=generate.EXAMPLE)(generate.generate)
 app.command("lint", epilog=lint.EXAMPLE)(lint.lint)
+app.command("schema", epilog=schema.EXAMPLE)(schema.schema)
 app.command("simulate", epilog=simulate.EXAMPLE)(simulate.simulate)
 app.command("verify", epilog=verify.EXAMPLE)(verify.verify)
 app.command("matrix", epilog=matrix.EXAMPLE)(matrix.matrix)

@@ -3,19 +3,23 @@ What all parts of a spec have in common: strict models, and kinds found by their
 """
 
 import pkgutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import Any
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict
 
 
 class SpecModel(BaseModel):
     """
     A part of a spec: unknown fields are refused and nothing changes after loading.
+
+    The text below each field is what `stepgen schema` says of it.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, strict=True, use_attribute_docstrings=True
+    )
 
 
 class KindModel(SpecModel):
@@ -43,8 +47,21 @@ def kind_names(kinds: Sequence[type[KindModel]]) -> tuple[str, ...]:
     return tuple(str(kind.model_fields["kind"].default) for kind in kinds)
 
 
-def as_kind(value: Any) -> Any:  # noqa: ANN401 - whatever the YAML held
+def short_form(wrap: Callable[[Any], Any], accepted: Any) -> BeforeValidator:  # noqa: ANN401 - a type
     """
-    Return ``{kind: value}`` for the short form, in which a kind is just its name.
+    Return the annotation of a field that may be written shorter; *wrap* makes it long.
+
+    *accepted* is the type of what may be written, for the JSON Schema.
     """
+    return BeforeValidator(wrap, json_schema_input_type=accepted)
+
+
+def kind_in_short(union: Any, kinds: Sequence[type[KindModel]]) -> BeforeValidator:  # noqa: ANN401 - a type
+    """
+    Return the annotation of a field of *union*, where one of *kinds* may be just its name.
+    """
+    return short_form(_as_kind, union | Literal[kind_names(kinds)])
+
+
+def _as_kind(value: Any) -> Any:  # noqa: ANN401 - whatever the YAML held
     return {"kind": value} if isinstance(value, str) else value

@@ -7,16 +7,17 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     AfterValidator,
-    BeforeValidator,
     Field,
     StringConstraints,
     field_validator,
     model_validator,
 )
 
-from stepgen.spec.base import SpecModel
+from stepgen.spec.base import SpecModel, short_form
 from stepgen.spec.drives import Drive
 from stepgen.spec.motions import Motion
+from stepgen.spec.pins import PinName
+from stepgen.spec.sequence import Sequence
 from stepgen.spec.timings import Timing
 from stepgen.spec.turns import Steps
 
@@ -64,13 +65,21 @@ class Library(SpecModel):
     """
 
     name: str
+    """A letter and up to 62 letters, digits or underscores: folder, header and library name."""
     version: Version = "1.0.0"
+    """Three numbers."""
     author: Line = "unknown"
+    """Who made the library."""
     maintainer: Line | None = None
+    """Who looks after it; the author, if it is not given."""
     sentence: Line | None = None
+    """What it does, in one sentence; the library manager shows it."""
     paragraph: Line | None = None
+    """What follows the sentence there."""
     url: Address = "https://docs.arduino.cc/libraries/"
+    """The address of a page about the library."""
     category: _CATEGORIES = "Device Control"
+    """Where the library manager lists it."""
 
     @model_validator(mode="after")
     def _name_is_a_file_name(self) -> Self:
@@ -121,6 +130,7 @@ class Budget(SpecModel):
     """
 
     isr_cycles: Annotated[int, Field(ge=1)]
+    """The most CPU cycles that one run of the step interrupt may take."""
 
 
 class Motor(SpecModel):
@@ -129,12 +139,32 @@ class Motor(SpecModel):
     """
 
     drive: Drive
+    """What drives the motor: `motor-shield`, or a mapping with kind, pins and sequence."""
     timing: Timing = Field(default="fast-pwm", validate_default=True)
+    """What paces the steps: `fast-pwm` on a 16-bit timer, or `compare` on timer 2."""
     motion: Motion = Field(default="constant", validate_default=True)
+    """How it moves: `constant` speed, or `update-events` that change the speed while it runs."""
     steps_per_turn: Steps | None = None
+    """Full steps in one turn of the shaft: a number, or full_steps and gear."""
     at_rest: Literal["hold", "release"] = "release"
+    """What the coils do after a motion with an end."""
     port: Literal["shared", "owned"] = "shared"
+    """Whether the sketch may write other bits of the motor's ports; `owned` is faster."""
     budget: Budget | None = None
+    """What it may take of the chip at most, else verification fails."""
+
+
+class MotorInShort(Motor):
+    """
+    One motor as it may be written: timer, pins and sequence also stand right in the motor.
+    """
+
+    timer: int | None = None
+    """The number of the timer, instead of in `timing`."""
+    pins: tuple[PinName, ...] = ()
+    """The pins, instead of in `drive`."""
+    sequence: Sequence = "full"
+    """The sequence of steps, instead of in `drive`."""
 
 
 def _motor_name(name: str) -> str:
@@ -149,7 +179,7 @@ def _motor_name(name: str) -> str:
 MotorName = Annotated[str, AfterValidator(_motor_name)]
 """A motor's name, from which the names of its functions are made."""
 
-MotorEntry = Annotated[Motor, BeforeValidator(_long_form)]
+MotorEntry = Annotated[Motor, short_form(_long_form, MotorInShort)]
 
 
 class Spec(SpecModel):
@@ -161,10 +191,14 @@ class Spec(SpecModel):
     ``[analogWrite D9 D10, tone D8, SoftwareSerial D2 D3, Servo D5 D6]``; analogWrite needs them.
     """
 
-    library: Annotated[Library, BeforeValidator(_as_library)]
+    library: Annotated[Library, short_form(_as_library, Library | str)]
+    """The library's name, or a mapping with its metadata."""
     board: str
+    """The board, as `stepgen boards` names it."""
     motors: Annotated[dict[MotorName, MotorEntry], Field(min_length=1)]
+    """The motors by name; a name is a lower-case letter and up to 30 letters or digits."""
     uses: Annotated[tuple[str, ...], Field(strict=False)] = ()
+    """What else the sketch uses of the chip, such as `Servo`, `Serial` or `analogWrite D5`."""
 
     @field_validator("motors")
     @classmethod

@@ -5,7 +5,7 @@ Pins as people know them: D12, 12, A8 or PB4.
 import re
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator
+from stepgen.spec.base import short_form
 
 _PIN = re.compile(r"D?\d{1,3}|A\d{1,2}|P[A-L][0-7]", re.IGNORECASE)
 
@@ -19,5 +19,5 @@ def _pin_name(value: Any) -> str:  # noqa: ANN401 - whatever the YAML held
     return f"D{text}" if text.isdigit() else text.upper()
 
 
-PinName = Annotated[str, BeforeValidator(_pin_name)]
+PinName = Annotated[str, short_form(_pin_name, str | int)]
 """A pin's name, upper-case, with D before a bare number. Whether it exists, the board says."""

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from stepgen.spec.base import SpecModel
+from stepgen.spec.base import SpecModel, short_form
 
 NamedSequence = Literal["full", "wave", "half"]
 MINIMUM_PATTERNS = 3  # with two, a step forward and a step back are the same
@@ -36,6 +36,7 @@ class PatternTable(SpecModel):
     """
 
     patterns: Annotated[tuple[WirePattern, ...], Field(strict=False)]
+    """What the wires show in each phase, such as "1010"."""
 
     @model_validator(mode="after")
     def _patterns_are_wires(self) -> Self:
@@ -63,6 +64,6 @@ def _form(value: Any) -> str:  # noqa: ANN401 - whatever the YAML held
 
 Sequence = Annotated[
     Annotated[NamedSequence, Tag("sequence")]
-    | Annotated[PatternTable, BeforeValidator(_as_table), Tag("patterns")],
+    | Annotated[PatternTable, short_form(_as_table, PatternTable | list[str]), Tag("patterns")],
     Discriminator(_form),
 ]

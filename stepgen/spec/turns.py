@@ -6,9 +6,9 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from stepgen.spec.base import SpecModel
+from stepgen.spec.base import SpecModel, short_form
 
 _LARGEST = 1_000_000
 
@@ -28,7 +28,7 @@ def _fraction(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
     return number
 
 
-Ratio = Annotated[Fraction, BeforeValidator(_fraction)]
+Ratio = Annotated[Fraction, short_form(_fraction, int | float | str)]
 """A positive ratio, kept exactly as it was written."""
 
 
@@ -38,7 +38,9 @@ class StepsPerTurn(SpecModel):
     """
 
     full_steps: Annotated[int, Field(ge=1, le=_LARGEST)]
+    """Full steps of the bare motor in one turn."""
     gear: Ratio = Fraction(1)
+    """Turns of the motor in one of the shaft: 64, 63.68395 or 25792/405; kept exactly."""
 
     @property
     def exact(self) -> Fraction:
@@ -52,4 +54,4 @@ def _as_steps(value: Any) -> Any:  # noqa: ANN401 - whatever the YAML held
     return {"full_steps": value} if isinstance(value, int) else value
 
 
-Steps = Annotated[StepsPerTurn, BeforeValidator(_as_steps)]
+Steps = Annotated[StepsPerTurn, short_form(_as_steps, StepsPerTurn | int)]

@@ -18,11 +18,12 @@ MAY_IMPORT = {
     "plan": FACTS | {"spec", "devices"},
     "reference": FACTS | {"spec", "devices"},
     "library": FACTS | {"spec", "devices", "plan"},
+    "schema": {"spec", "devices"},
     "lint": FACTS,
     "verify": FACTS | {"spec", "devices", "plan", "reference", "library"},
-    "api": FACTS | {"spec", "devices", "plan", "library", "lint", "verify", "reference"},
+    "api": FACTS | {"spec", "devices", "plan", "library", "lint", "schema", "verify", "reference"},
     "commands": FACTS
-    | {"spec", "devices", "plan", "library", "lint", "verify", "reference", "api"},
+    | {"spec", "devices", "plan", "library", "lint", "schema", "verify", "reference", "api"},
     "cli": FACTS | {"commands", "api"},
     "__main__": {"cli"},
 }

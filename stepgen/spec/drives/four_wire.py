@@ -19,7 +19,9 @@ class FourWire(KindModel):
 
     kind: Literal["four-wire"] = "four-wire"
     pins: Annotated[tuple[PinName, PinName, PinName, PinName], Field(strict=False)]
+    """Coils A, B, C and D, in the order in which they follow each other."""
     sequence: Sequence = "full"
+    """`full`, `wave`, `half`, or an own table of patterns."""
 
     @model_validator(mode="after")
     def _coils_have_pins_of_their_own(self) -> Self:

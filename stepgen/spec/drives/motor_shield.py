@@ -35,8 +35,11 @@ class MotorShield(KindModel):
 
     kind: Literal["motor-shield"] = "motor-shield"
     sequence: NamedSequence = "full"
+    """`full`, `wave` or `half`."""
     stacked: bool = False
+    """Whether this is a second shield, on top of another one."""
     enables: Enables | None = None
+    """The pins of PWM A and PWM B of a stacked shield whose D3 and D11 are cut."""
 
     @model_validator(mode="after")
     def _enables_are_rewired_on_top(self) -> Self:

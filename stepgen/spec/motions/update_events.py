@@ -16,6 +16,7 @@ class UpdateEvents(KindModel):
 
     kind: Literal["update-events"] = "update-events"
     debug: bool = False
+    """Whether the library gets a function that prints the state of the motion."""
 
 
 SPEC = UpdateEvents

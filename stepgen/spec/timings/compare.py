@@ -14,6 +14,7 @@ class Compare(KindModel):
 
     kind: Literal["compare"] = "compare"
     timer: int | None = None
+    """2, the only 8-bit timer that there is."""
 
 
 SPEC = Compare

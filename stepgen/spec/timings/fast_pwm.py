@@ -14,6 +14,7 @@ class FastPwm(KindModel):
 
     kind: Literal["fast-pwm"] = "fast-pwm"
     timer: int | None = None
+    """The number of a 16-bit timer; without it the first free one is taken."""
 
 
 SPEC = FastPwm
