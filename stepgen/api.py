@@ -11,8 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stepgen.draft import Draft
 from stepgen.errors import Fault, StepgenError
 from stepgen.library.render import render_library
+from stepgen.library.swap import os_errors, replace_file
 from stepgen.library.write import (
     WriteResult,
     check_library,
@@ -58,6 +60,21 @@ class Generated:
         Return the library's name, which is also that of its folder.
         """
         return self.plan.library.name
+
+
+def init(draft: Draft, path: Path, *, force: bool = False) -> None:
+    """
+    Write *draft* as the spec *path*; one that is there already only with *force*.
+
+    Raises:
+        StepgenError: The spec would be refused, or the file cannot be written.
+    """
+    if path.exists() and not force:
+        reason = "is there already; name another file, or overwrite it with --force"
+        raise StepgenError.of(reason, place=str(path))
+    draft.plan(path.name)
+    with os_errors(path):
+        replace_file(draft.text(path.name).encode(), path)
 
 
 def load(path: Path) -> LoadedSpec:

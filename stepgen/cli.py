@@ -20,6 +20,7 @@ from stepgen.commands import (
     check,
     doctor,
     generate,
+    init,
     lint,
     matrix,
     plan,
@@ -100,6 +101,7 @@ def stepgen(
 
 
 app.command("boards", epilog=boards.EXAMPLE)(boards.boards)
+app.command("init", epilog=init.EXAMPLE)(init.init)
 app.command("check", epilog=check.EXAMPLE)(check.check)
 app.command("plan", epilog=plan.EXAMPLE)(plan.plan)
 app.command("generate", epilog=generate.EXAMPLE)(generate.generate)

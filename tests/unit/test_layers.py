@@ -9,6 +9,8 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[2] / "stepgen"
 FACTS = {"errors", "units"}
+BELOW_API = FACTS | {"spec", "devices", "plan", "library", "reference", "verify"}
+BELOW_API |= {"draft", "lint", "schema"}
 # Layer -> the layers it may import. What is not listed here is no layer, and a test says so.
 MAY_IMPORT = {
     "errors": set[str](),
@@ -19,11 +21,24 @@ MAY_IMPORT = {
     "reference": FACTS | {"spec", "devices"},
     "library": FACTS | {"spec", "devices", "plan"},
     "schema": {"spec", "devices"},
+    "draft": FACTS | {"spec", "devices", "plan"},
     "lint": FACTS,
     "verify": FACTS | {"spec", "devices", "plan", "reference", "library"},
-    "api": FACTS | {"spec", "devices", "plan", "library", "lint", "schema", "verify", "reference"},
+    "api": FACTS
+    | {"spec", "devices", "plan", "library", "draft", "lint", "schema", "verify", "reference"},
     "commands": FACTS
-    | {"spec", "devices", "plan", "library", "lint", "schema", "verify", "reference", "api"},
+    | {
+        "spec",
+        "devices",
+        "plan",
+        "library",
+        "draft",
+        "lint",
+        "schema",
+        "verify",
+        "reference",
+        "api",
+    },
     "cli": FACTS | {"commands", "api"},
     "__main__": {"cli"},
 }
