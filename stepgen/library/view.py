@@ -62,6 +62,7 @@ class LibraryView:
     motion_names: tuple[str, ...]
     motion_structs: tuple[MotionStruct, ...]
     think_bit: int
+    releases: bool
     dumps: bool
     timing_names: tuple[str, ...]
     needs_comment: tuple[str, ...]
@@ -105,6 +106,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
         motion_structs=_motion_structs(motors),
         think_bit=THINK_BIT,
+        releases=any(motor.releases for motor in motors),
         dumps=any(motor.motion.dumps for motor in plan.motors),
         timing_names=tuple(sorted({motor.timing_name for motor in motors})),
         needs_comment=needs_comment(plan),

@@ -49,7 +49,7 @@ class Toggle:
 
     kind = "toggle"
     state_note = "the bits that the next step toggles"
-    handler = HandlerCycles(longest=167, masked=45, to_clock=69, to_clock_thinking=92)
+    handler = HandlerCycles(longest=150, masked=45, to_clock=71, to_clock_thinking=93)
 
     @property
     def both(self) -> int:
@@ -91,12 +91,12 @@ class Ring:
         """
         Return the cycles of the boundary handler, which makes a step itself when it thinks.
         """
-        thinking = 103 + 11 * len(self.writes)
+        thinking = 104 + 11 * len(self.writes)
         more = len(self.writes) - 1
         return HandlerCycles(
-            longest=176 + 3 * more,
+            longest=162 + 3 * more,
             masked=9 * more,
-            to_clock=74,
+            to_clock=77,
             to_clock_thinking=thinking,
         )
 

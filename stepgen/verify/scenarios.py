@@ -145,6 +145,8 @@ def _restarts(motors: range, fastest: int) -> Iterator[Action]:
             (DRIVE, fastest, 1_000, 20_000),
             (DRIVE, 524_288, 5, 1_100_000),
             (BACK, 2_000_003, 3, 9_000_000),
+            (DRIVE, fastest, 0, 20_000),
+            (BACK, 70_003, 1, 200_000),  # the longest way: the timer is set anew, and the end
         ):
             yield _speed(motor, control, top, limit)
             yield Wait(wait)

@@ -150,8 +150,8 @@ MUTANTS = (
     Mutant(
         "a millisecond limit that is one step late",
         "motions/constant.j2",
-        "motion.endMillis) < 0)",
-        "motion.endMillis) <= 0)",
+        "Motion.endMillis) >= 0",
+        "Motion.endMillis) > 0",
     ),
     Mutant(
         "a first interval that is a tick too long",

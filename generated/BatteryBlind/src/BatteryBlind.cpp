@@ -201,8 +201,8 @@ SHARED void motorRunTimer(uint8_t elapsed) {
   Setting &next = near(motorMotion).next;
   TCCR1B = _BV(WGM13) | _BV(WGM12);
   TCCR1A = 0;
-  OCR1A = next.top;
   TCNT1 = elapsed;
+  OCR1A = next.top;
   TIFR1 = _BV(TOV1);  // the old setting makes no step any more
   TCCR1A = _BV(WGM11) | _BV(WGM10);
   OCR1A = next.top;

@@ -41,6 +41,7 @@ constexpr uint8_t kCoast = 0x02;    // the last step is made, the coils are stil
 constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
+constexpr uint8_t kLaps = 0x20;     // a millisecond limit ends after more laps of 16384 ms
 
 // A timer's TOP and clock select bits; 0 selects no clock.
 struct Setting {
@@ -77,26 +78,20 @@ SHARED Setting chooseSetting(uint32_t period) {
 struct ConstantMotion {
   uint8_t mode;  // kRunning, kReverse and so on
   uint8_t status;  // MOTOR_STAT_...
-  uint8_t run;  // steps counted down at a time: 255, or 1 to think before each
   uint16_t rest;  // steps to make after those that are counted down
   uint16_t restHigh;  // and their upper half
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
-  __uint24 endLaps;  // after so many more laps of 16384 ms
+  uint8_t laps;  // with kLaps after so many more laps of 16384 ms, 0 for 256,
+  uint16_t lapsHigh;  // and so many times 256 more
   Setting next;  // the next step sets the timer to this, unless its select is 0
-  uint16_t elapsed;  // the ticks that have passed by then
+  uint8_t elapsed;  // the ticks that have passed by then
 };
 
 // The lower 16 bits of millis(). Only while interrupts are off.
 INLINE uint16_t millisCount() {
-  const volatile uint8_t *const bytes = reinterpret_cast<const volatile uint8_t *>(&timer0_millis);
-  union {
-    uint8_t bytes[2];
-    uint16_t count;
-  } low;
-  low.bytes[0] = bytes[0];
-  low.bytes[1] = bytes[1];
-  return low.count;
+  typedef const volatile uint16_t __attribute__((may_alias)) LowerHalf;
+  return *reinterpret_cast<LowerHalf *>(&timer0_millis);
 }
 
 // Returns why a call of a speed function must be refused, or 0.
@@ -170,8 +165,8 @@ SHARED void nearEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t nearElapsed[] PROGMEM = {
-    124, 15, 1, 0, 0,
-    142, 17, 2, 0, 0,
+    127, 15, 1, 0, 0,
+    143, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -188,8 +183,8 @@ INLINE void nearRunTimer(uint8_t elapsed) {
   Setting &next = nearMotion.next;
   TCCR3B = _BV(WGM33) | _BV(WGM32);
   TCCR3A = 0;
-  OCR3A = next.top;
   TCNT3 = elapsed;
+  OCR3A = next.top;
   TIFR3 = _BV(TOV3);  // the old setting makes no step any more
   TCCR3A = _BV(WGM31) | _BV(WGM30);
   OCR3A = next.top;
@@ -206,7 +201,7 @@ INLINE void nearTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 226 when it
+// Timer 3 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 212 when it
 // goes on in __vector_near_boundary. The wires change 34 cycles after the timer wraps (39 before a
 // boundary). It writes port A and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -274,29 +269,39 @@ ISR(TIMER3_OVF_vect, ISR_NAKED) {
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
+// Notes that the motor is at its end point or was stopped; *mode* is its mode from now on.
 INLINE void nearReached(uint8_t mode) {
   auto &motion = nearMotion;
-  motion.mode = (motion.mode & kReverse) | mode;
+  motion.mode = mode;
   motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
 INLINE void nearHalt(uint8_t mode) {
   nearStopTimer();
-  nearReached(mode);
+  nearReached(mode & kReverse);
 }
 
-// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
-// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
-INLINE bool nearMillisOver(bool count) {
+// Tells whether the clock has come to the end of a millisecond limit, or of a lap of it. Only while
+// interrupts are off.
+INLINE bool nearMillisOver() {
+  return static_cast<int16_t>(millisCount() - nearMotion.endMillis) >= 0;
+}
+
+// What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
+// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+INLINE void nearCountOn(uint8_t mode, bool lapOver) {
   auto &motion = nearMotion;
-  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
-  if (motion.endLaps == 0) return true;
-  if (count) {
-    --motion.endLaps;
+  if (motion.rest == 0) {
+    --motion.restHigh;
+  } else if (lapOver) {
     motion.endMillis += 0x4000;
+    if (--motion.laps) return;
+    if (motion.lapsHigh) {
+      --motion.lapsHigh;
+    } else {
+      motion.mode = mode & ~kLaps;
+    }
   }
-  return false;
 }
 
 // Where the step interrupt goes on in its rare ways: after the last step of a run (each 255th,
@@ -306,31 +311,38 @@ extern "C" void __vector_near_boundary() __attribute__((signal, used, externally
 void __vector_near_boundary() {
   auto &motion = nearMotion;
   const uint8_t mode = motion.mode;
+  uint8_t run = 255;  // steps to count down now; 1 to think before each
+  bool over = false;
   if (mode & kThink) {
-    // No lap ends before a call has taken effect: the first one ends 16 s after it, or later.
-    if ((mode & kCoast) || nearMillisOver(!motion.next.select)) {
+    run = 1;
+    over = nearMillisOver();
+    if ((mode & kCoast) || (over && !(mode & kLaps))) {
       GPIOR1 = 1;  // there was no step
       nearCoilsOff();
-      nearHalt(0);
+      nearHalt(mode);
       return;
     }
     nearStep();
   }
-  if (motion.next.select) nearRunTimer(motion.elapsed);
+  if (motion.next.select) {
+    // The first step after a call: no lap ends yet, and *rest* cannot be 0 where there is no limit.
+    nearRunTimer(motion.elapsed);
+  } else if (run == 1) {
+    nearCountOn(mode, over);
+  }
   const uint16_t rest = motion.rest;
-  uint8_t run = motion.run;
-  if (rest < run) {
-    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
-    if ((mode & (kEndless | kThink)) || motion.restHigh) {
+  if (run == 255 && rest < 255) {
+    if ((mode & kEndless) || motion.restHigh) {
       --motion.restHigh;
-    } else if (rest) {
-      run = rest;
     } else {
-      // The rotor is still on its way: the coils go off one interval after the last step.
-      nearReached(kThink | kCoast);
-      motion.rest = motion.restHigh = -1;
-      GPIOR1 = 1;
-      return;
+      run = rest;
+      if (!run) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        nearReached((mode & kReverse) | kThink | kCoast);
+        motion.rest = motion.restHigh = -1;
+        GPIOR1 = 1;
+        return;
+      }
     }
   }
   motion.rest = rest - run;
@@ -357,7 +369,7 @@ int8_t nearSetSpeed(
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
     const Masked masked;
     nearCoilsOff();
-    nearHalt(0);
+    nearHalt(nearMotion.mode);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
@@ -382,13 +394,13 @@ int8_t nearSetSpeed(
   __uint24 laps = millis >> 14;
   uint16_t wait = millis & 0x3FFF;
   if (laps) {
-    --laps;
     wait += 0x4000;
+    if (--laps) mode |= kLaps;
   }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
-  const uint16_t elapsed = pgm_read_byte(&nearElapsed[entry]);
+  const uint8_t elapsed = pgm_read_byte(&nearElapsed[entry]);
   const Masked masked;
   const uint8_t before = motion.mode;
   const uint32_t here = nearPosition();
@@ -396,9 +408,9 @@ int8_t nearSetSpeed(
   motion.rest = rest;
   motion.restHigh = rest >> 16;
   GPIOR1 = 1;
-  motion.run = mode & kThink ? 1 : 255;
   motion.endMillis = millisCount() + wait;
-  motion.endLaps = laps;
+  motion.laps = laps;
+  motion.lapsHigh = (laps - 1) >> 8;
   motion.next = setting;
   motion.elapsed = elapsed;
   motion.status = MOTOR_STAT_SPIN_FIXED;
@@ -420,8 +432,8 @@ uint8_t nearReadStatus() {
   const Masked masked;
   uint8_t status = nearMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
-  const bool limited = (nearMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && nearMillisOver(false)) status |= MOTOR_STAT_REACHED;
+  const bool limited = (nearMotion.mode & (kThink | kLaps)) == kThink;
+  if (limited && nearMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -518,8 +530,8 @@ SHARED void farEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t farElapsed[] PROGMEM = {
-    130, 16, 2, 0, 0,
-    144, 18, 2, 0, 0,
+    133, 16, 2, 0, 0,
+    145, 18, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -536,8 +548,8 @@ INLINE void farRunTimer(uint8_t elapsed) {
   Setting &next = farMotion.next;
   TCCR4B = _BV(WGM43) | _BV(WGM42);
   TCCR4A = 0;
-  OCR4A = next.top;
   TCNT4 = elapsed;
+  OCR4A = next.top;
   TIFR4 = _BV(TOV4);  // the old setting makes no step any more
   TCCR4A = _BV(WGM41) | _BV(WGM40);
   OCR4A = next.top;
@@ -554,7 +566,7 @@ INLINE void farTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 232 when it
+// Timer 4 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 218 when it
 // goes on in __vector_far_boundary. The wires change 40 cycles after the timer wraps (45 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -622,29 +634,39 @@ ISR(TIMER4_OVF_vect, ISR_NAKED) {
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
+// Notes that the motor is at its end point or was stopped; *mode* is its mode from now on.
 INLINE void farReached(uint8_t mode) {
   auto &motion = farMotion;
-  motion.mode = (motion.mode & kReverse) | mode;
+  motion.mode = mode;
   motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
 INLINE void farHalt(uint8_t mode) {
   farStopTimer();
-  farReached(mode);
+  farReached(mode & kReverse);
 }
 
-// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
-// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
-INLINE bool farMillisOver(bool count) {
+// Tells whether the clock has come to the end of a millisecond limit, or of a lap of it. Only while
+// interrupts are off.
+INLINE bool farMillisOver() {
+  return static_cast<int16_t>(millisCount() - farMotion.endMillis) >= 0;
+}
+
+// What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
+// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+INLINE void farCountOn(uint8_t mode, bool lapOver) {
   auto &motion = farMotion;
-  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
-  if (motion.endLaps == 0) return true;
-  if (count) {
-    --motion.endLaps;
+  if (motion.rest == 0) {
+    --motion.restHigh;
+  } else if (lapOver) {
     motion.endMillis += 0x4000;
+    if (--motion.laps) return;
+    if (motion.lapsHigh) {
+      --motion.lapsHigh;
+    } else {
+      motion.mode = mode & ~kLaps;
+    }
   }
-  return false;
 }
 
 // Where the step interrupt goes on in its rare ways: after the last step of a run (each 255th,
@@ -654,31 +676,38 @@ extern "C" void __vector_far_boundary() __attribute__((signal, used, externally_
 void __vector_far_boundary() {
   auto &motion = farMotion;
   const uint8_t mode = motion.mode;
+  uint8_t run = 255;  // steps to count down now; 1 to think before each
+  bool over = false;
   if (mode & kThink) {
-    // No lap ends before a call has taken effect: the first one ends 16 s after it, or later.
-    if ((mode & kCoast) || farMillisOver(!motion.next.select)) {
+    run = 1;
+    over = farMillisOver();
+    if ((mode & kCoast) || (over && !(mode & kLaps))) {
       farCount = 1;  // there was no step
       farCoilsOff();
-      farHalt(0);
+      farHalt(mode);
       return;
     }
     farStep();
   }
-  if (motion.next.select) farRunTimer(motion.elapsed);
+  if (motion.next.select) {
+    // The first step after a call: no lap ends yet, and *rest* cannot be 0 where there is no limit.
+    farRunTimer(motion.elapsed);
+  } else if (run == 1) {
+    farCountOn(mode, over);
+  }
   const uint16_t rest = motion.rest;
-  uint8_t run = motion.run;
-  if (rest < run) {
-    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
-    if ((mode & (kEndless | kThink)) || motion.restHigh) {
+  if (run == 255 && rest < 255) {
+    if ((mode & kEndless) || motion.restHigh) {
       --motion.restHigh;
-    } else if (rest) {
-      run = rest;
     } else {
-      // The rotor is still on its way: the coils go off one interval after the last step.
-      farReached(kThink | kCoast);
-      motion.rest = motion.restHigh = -1;
-      farCount = 1;
-      return;
+      run = rest;
+      if (!run) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        farReached((mode & kReverse) | kThink | kCoast);
+        motion.rest = motion.restHigh = -1;
+        farCount = 1;
+        return;
+      }
     }
   }
   motion.rest = rest - run;
@@ -705,7 +734,7 @@ int8_t farSetSpeed(
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
     const Masked masked;
     farCoilsOff();
-    farHalt(0);
+    farHalt(farMotion.mode);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
@@ -730,13 +759,13 @@ int8_t farSetSpeed(
   __uint24 laps = millis >> 14;
   uint16_t wait = millis & 0x3FFF;
   if (laps) {
-    --laps;
     wait += 0x4000;
+    if (--laps) mode |= kLaps;
   }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
-  const uint16_t elapsed = pgm_read_byte(&farElapsed[entry]);
+  const uint8_t elapsed = pgm_read_byte(&farElapsed[entry]);
   const Masked masked;
   const uint8_t before = motion.mode;
   const uint32_t here = farPosition();
@@ -744,9 +773,9 @@ int8_t farSetSpeed(
   motion.rest = rest;
   motion.restHigh = rest >> 16;
   farCount = 1;
-  motion.run = mode & kThink ? 1 : 255;
   motion.endMillis = millisCount() + wait;
-  motion.endLaps = laps;
+  motion.laps = laps;
+  motion.lapsHigh = (laps - 1) >> 8;
   motion.next = setting;
   motion.elapsed = elapsed;
   motion.status = MOTOR_STAT_SPIN_FIXED;
@@ -768,8 +797,8 @@ uint8_t farReadStatus() {
   const Masked masked;
   uint8_t status = farMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
-  const bool limited = (farMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && farMillisOver(false)) status |= MOTOR_STAT_REACHED;
+  const bool limited = (farMotion.mode & (kThink | kLaps)) == kThink;
+  if (limited && farMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 

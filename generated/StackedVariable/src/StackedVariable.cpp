@@ -41,7 +41,7 @@ constexpr uint8_t kCoast = 0x02;    // the last step is made, the coils are stil
 constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
-
+constexpr uint8_t kLaps = 0x20;     // a millisecond limit ends after more laps of 16384 ms
 constexpr uint8_t kClock = 0x20;    // look if a moment has come; the interrupt's bit 5
 constexpr uint8_t kLimited = 0x40;  // a limit in milliseconds
 constexpr uint8_t kEnded = 0x80;    // at an end point, not just stopped
@@ -81,14 +81,14 @@ SHARED Setting chooseSetting(uint32_t period) {
 struct ConstantMotion {
   uint8_t mode;  // kRunning, kReverse and so on
   uint8_t status;  // MOTOR_STAT_...
-  uint8_t run;  // steps counted down at a time: 255, or 1 to think before each
   uint16_t rest;  // steps to make after those that are counted down
   uint16_t restHigh;  // and their upper half
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
-  __uint24 endLaps;  // after so many more laps of 16384 ms
+  uint8_t laps;  // with kLaps after so many more laps of 16384 ms, 0 for 256,
+  uint16_t lapsHigh;  // and so many times 256 more
   Setting next;  // the next step sets the timer to this, unless its select is 0
-  uint16_t elapsed;  // the ticks that have passed by then
+  uint8_t elapsed;  // the ticks that have passed by then
 };
 
 // What is kept of a motion whose speed changes.
@@ -113,14 +113,8 @@ struct VariableMotion {
 
 // The lower 16 bits of millis(). Only while interrupts are off.
 INLINE uint16_t millisCount() {
-  const volatile uint8_t *const bytes = reinterpret_cast<const volatile uint8_t *>(&timer0_millis);
-  union {
-    uint8_t bytes[2];
-    uint16_t count;
-  } low;
-  low.bytes[0] = bytes[0];
-  low.bytes[1] = bytes[1];
-  return low.count;
+  typedef const volatile uint16_t __attribute__((may_alias)) LowerHalf;
+  return *reinterpret_cast<LowerHalf *>(&timer0_millis);
 }
 
 constexpr uint16_t kFar = 0x7FFF;  // as many milliseconds as the interrupt can see ahead
@@ -209,8 +203,8 @@ SHARED void lowerEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t lowerElapsed[] PROGMEM = {
-    125, 15, 1, 0, 0,
-    143, 17, 2, 0, 0,
+    128, 16, 2, 0, 0,
+    144, 18, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -227,8 +221,8 @@ INLINE void lowerRunTimer(uint8_t elapsed) {
   Setting &next = lowerMotion.next;
   TCCR4B = _BV(WGM43) | _BV(WGM42);
   TCCR4A = 0;
-  OCR4A = next.top;
   TCNT4 = elapsed;
+  OCR4A = next.top;
   TIFR4 = _BV(TOV4);  // the old setting makes no step any more
   TCCR4A = _BV(WGM41) | _BV(WGM40);
   OCR4A = next.top;
@@ -245,7 +239,7 @@ INLINE void lowerTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 227 when it
+// Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 213 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and E and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.
@@ -313,29 +307,39 @@ ISR(TIMER4_OVF_vect, ISR_NAKED) {
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
+// Notes that the motor is at its end point or was stopped; *mode* is its mode from now on.
 INLINE void lowerReached(uint8_t mode) {
   auto &motion = lowerMotion;
-  motion.mode = (motion.mode & kReverse) | mode;
+  motion.mode = mode;
   motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
 INLINE void lowerHalt(uint8_t mode) {
   lowerStopTimer();
-  lowerReached(mode);
+  lowerReached(mode & kReverse);
 }
 
-// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
-// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
-INLINE bool lowerMillisOver(bool count) {
+// Tells whether the clock has come to the end of a millisecond limit, or of a lap of it. Only while
+// interrupts are off.
+INLINE bool lowerMillisOver() {
+  return static_cast<int16_t>(millisCount() - lowerMotion.endMillis) >= 0;
+}
+
+// What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
+// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+INLINE void lowerCountOn(uint8_t mode, bool lapOver) {
   auto &motion = lowerMotion;
-  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
-  if (motion.endLaps == 0) return true;
-  if (count) {
-    --motion.endLaps;
+  if (motion.rest == 0) {
+    --motion.restHigh;
+  } else if (lapOver) {
     motion.endMillis += 0x4000;
+    if (--motion.laps) return;
+    if (motion.lapsHigh) {
+      --motion.lapsHigh;
+    } else {
+      motion.mode = mode & ~kLaps;
+    }
   }
-  return false;
 }
 
 // Where the step interrupt goes on in its rare ways: after the last step of a run (each 255th,
@@ -345,31 +349,38 @@ extern "C" void __vector_lower_boundary() __attribute__((signal, used, externall
 void __vector_lower_boundary() {
   auto &motion = lowerMotion;
   const uint8_t mode = motion.mode;
+  uint8_t run = 255;  // steps to count down now; 1 to think before each
+  bool over = false;
   if (mode & kThink) {
-    // No lap ends before a call has taken effect: the first one ends 16 s after it, or later.
-    if ((mode & kCoast) || lowerMillisOver(!motion.next.select)) {
+    run = 1;
+    over = lowerMillisOver();
+    if ((mode & kCoast) || (over && !(mode & kLaps))) {
       GPIOR1 = 1;  // there was no step
       lowerCoilsOff();
-      lowerHalt(0);
+      lowerHalt(mode);
       return;
     }
     lowerStep();
   }
-  if (motion.next.select) lowerRunTimer(motion.elapsed);
+  if (motion.next.select) {
+    // The first step after a call: no lap ends yet, and *rest* cannot be 0 where there is no limit.
+    lowerRunTimer(motion.elapsed);
+  } else if (run == 1) {
+    lowerCountOn(mode, over);
+  }
   const uint16_t rest = motion.rest;
-  uint8_t run = motion.run;
-  if (rest < run) {
-    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
-    if ((mode & (kEndless | kThink)) || motion.restHigh) {
+  if (run == 255 && rest < 255) {
+    if ((mode & kEndless) || motion.restHigh) {
       --motion.restHigh;
-    } else if (rest) {
-      run = rest;
     } else {
-      // The rotor is still on its way: the coils go off one interval after the last step.
-      lowerReached(kThink | kCoast);
-      motion.rest = motion.restHigh = -1;
-      GPIOR1 = 1;
-      return;
+      run = rest;
+      if (!run) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        lowerReached((mode & kReverse) | kThink | kCoast);
+        motion.rest = motion.restHigh = -1;
+        GPIOR1 = 1;
+        return;
+      }
     }
   }
   motion.rest = rest - run;
@@ -398,7 +409,7 @@ int8_t lowerSetSpeed(
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
     const Masked masked;
     lowerCoilsOff();
-    lowerHalt(0);
+    lowerHalt(lowerMotion.mode);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
@@ -423,13 +434,13 @@ int8_t lowerSetSpeed(
   __uint24 laps = millis >> 14;
   uint16_t wait = millis & 0x3FFF;
   if (laps) {
-    --laps;
     wait += 0x4000;
+    if (--laps) mode |= kLaps;
   }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
-  const uint16_t elapsed = pgm_read_byte(&lowerElapsed[entry]);
+  const uint8_t elapsed = pgm_read_byte(&lowerElapsed[entry]);
   const Masked masked;
   const uint8_t before = motion.mode;
   const uint32_t here = lowerPosition();
@@ -437,9 +448,9 @@ int8_t lowerSetSpeed(
   motion.rest = rest;
   motion.restHigh = rest >> 16;
   GPIOR1 = 1;
-  motion.run = mode & kThink ? 1 : 255;
   motion.endMillis = millisCount() + wait;
-  motion.endLaps = laps;
+  motion.laps = laps;
+  motion.lapsHigh = (laps - 1) >> 8;
   motion.next = setting;
   motion.elapsed = elapsed;
   motion.status = MOTOR_STAT_SPIN_FIXED;
@@ -461,8 +472,8 @@ uint8_t lowerReadStatus() {
   const Masked masked;
   uint8_t status = lowerMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
-  const bool limited = (lowerMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && lowerMillisOver(false)) status |= MOTOR_STAT_REACHED;
+  const bool limited = (lowerMotion.mode & (kThink | kLaps)) == kThink;
+  if (limited && lowerMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -578,8 +589,8 @@ SHARED void upperRunTimer(uint16_t elapsed) {
   Setting &next = near(upperMotion).next;
   TCCR5B = _BV(WGM53) | _BV(WGM52);
   TCCR5A = 0;
-  OCR5A = next.top;
   TCNT5 = elapsed;
+  OCR5A = next.top;
   TIFR5 = _BV(TOV5);  // the old setting makes no step any more
   TCCR5A = _BV(WGM51) | _BV(WGM50);
   OCR5A = next.top;

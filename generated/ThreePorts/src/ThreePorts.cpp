@@ -37,7 +37,6 @@ extern "C" volatile unsigned long timer0_millis;
 
 // What a motor is doing.
 constexpr uint8_t kThink = 0x01;    // look at the clock before the step; the interrupt's bit 0
-constexpr uint8_t kCoast = 0x02;    // the last step is made, the coils are still on
 constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
@@ -208,8 +207,8 @@ SHARED void motorRunTimer(uint16_t elapsed) {
   Setting &next = near(motorMotion).next;
   TCCR1B = _BV(WGM13) | _BV(WGM12);
   TCCR1A = 0;
-  OCR1A = next.top;
   TCNT1 = elapsed;
+  OCR1A = next.top;
   TIFR1 = _BV(TOV1);  // the old setting makes no step any more
   TCCR1A = _BV(WGM11) | _BV(WGM10);
   OCR1A = next.top;

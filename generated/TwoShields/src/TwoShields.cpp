@@ -41,6 +41,7 @@ constexpr uint8_t kCoast = 0x02;    // the last step is made, the coils are stil
 constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
+constexpr uint8_t kLaps = 0x20;     // a millisecond limit ends after more laps of 16384 ms
 
 // A timer's TOP and clock select bits; 0 selects no clock.
 struct Setting {
@@ -77,26 +78,20 @@ SHARED Setting chooseSetting(uint32_t period) {
 struct ConstantMotion {
   uint8_t mode;  // kRunning, kReverse and so on
   uint8_t status;  // MOTOR_STAT_...
-  uint8_t run;  // steps counted down at a time: 255, or 1 to think before each
   uint16_t rest;  // steps to make after those that are counted down
   uint16_t restHigh;  // and their upper half
   uint32_t target;  // the position when all of them are made
   uint16_t endMillis;  // a millisecond limit ends at this count of millis(),
-  __uint24 endLaps;  // after so many more laps of 16384 ms
+  uint8_t laps;  // with kLaps after so many more laps of 16384 ms, 0 for 256,
+  uint16_t lapsHigh;  // and so many times 256 more
   Setting next;  // the next step sets the timer to this, unless its select is 0
-  uint16_t elapsed;  // the ticks that have passed by then
+  uint8_t elapsed;  // the ticks that have passed by then
 };
 
 // The lower 16 bits of millis(). Only while interrupts are off.
 INLINE uint16_t millisCount() {
-  const volatile uint8_t *const bytes = reinterpret_cast<const volatile uint8_t *>(&timer0_millis);
-  union {
-    uint8_t bytes[2];
-    uint16_t count;
-  } low;
-  low.bytes[0] = bytes[0];
-  low.bytes[1] = bytes[1];
-  return low.count;
+  typedef const volatile uint16_t __attribute__((may_alias)) LowerHalf;
+  return *reinterpret_cast<LowerHalf *>(&timer0_millis);
 }
 
 // Returns why a call of a speed function must be refused, or 0.
@@ -173,8 +168,8 @@ SHARED void lowerEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t lowerElapsed[] PROGMEM = {
-    125, 15, 1, 0, 0,
-    143, 17, 2, 0, 0,
+    128, 16, 2, 0, 0,
+    144, 18, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -191,8 +186,8 @@ INLINE void lowerRunTimer(uint8_t elapsed) {
   Setting &next = lowerMotion.next;
   TCCR1B = _BV(WGM13) | _BV(WGM12);
   TCCR1A = 0;
-  OCR1A = next.top;
   TCNT1 = elapsed;
+  OCR1A = next.top;
   TIFR1 = _BV(TOV1);  // the old setting makes no step any more
   TCCR1A = _BV(WGM11) | _BV(WGM10);
   OCR1A = next.top;
@@ -209,7 +204,7 @@ INLINE void lowerTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 227 when it
+// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 213 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -277,29 +272,39 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
+// Notes that the motor is at its end point or was stopped; *mode* is its mode from now on.
 INLINE void lowerReached(uint8_t mode) {
   auto &motion = lowerMotion;
-  motion.mode = (motion.mode & kReverse) | mode;
+  motion.mode = mode;
   motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
 INLINE void lowerHalt(uint8_t mode) {
   lowerStopTimer();
-  lowerReached(mode);
+  lowerReached(mode & kReverse);
 }
 
-// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
-// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
-INLINE bool lowerMillisOver(bool count) {
+// Tells whether the clock has come to the end of a millisecond limit, or of a lap of it. Only while
+// interrupts are off.
+INLINE bool lowerMillisOver() {
+  return static_cast<int16_t>(millisCount() - lowerMotion.endMillis) >= 0;
+}
+
+// What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
+// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+INLINE void lowerCountOn(uint8_t mode, bool lapOver) {
   auto &motion = lowerMotion;
-  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
-  if (motion.endLaps == 0) return true;
-  if (count) {
-    --motion.endLaps;
+  if (motion.rest == 0) {
+    --motion.restHigh;
+  } else if (lapOver) {
     motion.endMillis += 0x4000;
+    if (--motion.laps) return;
+    if (motion.lapsHigh) {
+      --motion.lapsHigh;
+    } else {
+      motion.mode = mode & ~kLaps;
+    }
   }
-  return false;
 }
 
 // Where the step interrupt goes on in its rare ways: after the last step of a run (each 255th,
@@ -309,27 +314,34 @@ extern "C" void __vector_lower_boundary() __attribute__((signal, used, externall
 void __vector_lower_boundary() {
   auto &motion = lowerMotion;
   const uint8_t mode = motion.mode;
+  uint8_t run = 255;  // steps to count down now; 1 to think before each
+  bool over = false;
   if (mode & kThink) {
-    // No lap ends before a call has taken effect: the first one ends 16 s after it, or later.
-    if ((mode & kCoast) || lowerMillisOver(!motion.next.select)) {
+    run = 1;
+    over = lowerMillisOver();
+    if (over && !(mode & kLaps)) {
       GPIOR1 = 1;  // there was no step
-      lowerHalt(0);
+      lowerHalt(mode);
       return;
     }
     lowerStep();
   }
-  if (motion.next.select) lowerRunTimer(motion.elapsed);
+  if (motion.next.select) {
+    // The first step after a call: no lap ends yet, and *rest* cannot be 0 where there is no limit.
+    lowerRunTimer(motion.elapsed);
+  } else if (run == 1) {
+    lowerCountOn(mode, over);
+  }
   const uint16_t rest = motion.rest;
-  uint8_t run = motion.run;
-  if (rest < run) {
-    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
-    if ((mode & (kEndless | kThink)) || motion.restHigh) {
+  if (run == 255 && rest < 255) {
+    if ((mode & kEndless) || motion.restHigh) {
       --motion.restHigh;
-    } else if (rest) {
-      run = rest;
     } else {
-      lowerHalt(0);
-      return;
+      run = rest;
+      if (!run) {
+        lowerHalt(mode);
+        return;
+      }
     }
   }
   motion.rest = rest - run;
@@ -358,7 +370,7 @@ int8_t lowerSetSpeed(
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
     const Masked masked;
     if (!(control & MOTOR_CTRL_DRV_EN)) lowerCoilsOff();
-    lowerHalt(0);
+    lowerHalt(lowerMotion.mode);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
@@ -383,13 +395,13 @@ int8_t lowerSetSpeed(
   __uint24 laps = millis >> 14;
   uint16_t wait = millis & 0x3FFF;
   if (laps) {
-    --laps;
     wait += 0x4000;
+    if (--laps) mode |= kLaps;
   }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
-  const uint16_t elapsed = pgm_read_byte(&lowerElapsed[entry]);
+  const uint8_t elapsed = pgm_read_byte(&lowerElapsed[entry]);
   const Masked masked;
   const uint8_t before = motion.mode;
   const uint32_t here = lowerPosition();
@@ -397,9 +409,9 @@ int8_t lowerSetSpeed(
   motion.rest = rest;
   motion.restHigh = rest >> 16;
   GPIOR1 = 1;
-  motion.run = mode & kThink ? 1 : 255;
   motion.endMillis = millisCount() + wait;
-  motion.endLaps = laps;
+  motion.laps = laps;
+  motion.lapsHigh = (laps - 1) >> 8;
   motion.next = setting;
   motion.elapsed = elapsed;
   motion.status = MOTOR_STAT_SPIN_FIXED;
@@ -421,8 +433,8 @@ uint8_t lowerReadStatus() {
   const Masked masked;
   uint8_t status = lowerMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
-  const bool limited = (lowerMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && lowerMillisOver(false)) status |= MOTOR_STAT_REACHED;
+  const bool limited = (lowerMotion.mode & (kThink | kLaps)) == kThink;
+  if (limited && lowerMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 
@@ -519,8 +531,8 @@ SHARED void upperEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t upperElapsed[] PROGMEM = {
-    131, 16, 2, 0, 0,
-    145, 18, 2, 0, 0,
+    134, 16, 2, 0, 0,
+    146, 18, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
@@ -537,8 +549,8 @@ INLINE void upperRunTimer(uint8_t elapsed) {
   Setting &next = upperMotion.next;
   TCCR3B = _BV(WGM33) | _BV(WGM32);
   TCCR3A = 0;
-  OCR3A = next.top;
   TCNT3 = elapsed;
+  OCR3A = next.top;
   TIFR3 = _BV(TOV3);  // the old setting makes no step any more
   TCCR3A = _BV(WGM31) | _BV(WGM30);
   OCR3A = next.top;
@@ -555,7 +567,7 @@ INLINE void upperTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 233 when it
+// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 219 when it
 // goes on in __vector_upper_boundary. The wires change 41 cycles after the timer wraps (46 before a
 // boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -623,29 +635,39 @@ ISR(TIMER3_OVF_vect, ISR_NAKED) {
       : "memory");
 }
 
-// Notes that the motor is at its end point or was stopped; *mode* says what is left of its mode.
+// Notes that the motor is at its end point or was stopped; *mode* is its mode from now on.
 INLINE void upperReached(uint8_t mode) {
   auto &motion = upperMotion;
-  motion.mode = (motion.mode & kReverse) | mode;
+  motion.mode = mode;
   motion.status = (motion.status & ~MOTOR_STAT_SPIN_FIXED) | MOTOR_STAT_REACHED;
 }
 
 INLINE void upperHalt(uint8_t mode) {
   upperStopTimer();
-  upperReached(mode);
+  upperReached(mode & kReverse);
 }
 
-// Tells whether the millisecond limit has passed, and with *count* counts a lap that has. That
-// must be done once in 16 s at least, and is: before each step. Only while interrupts are off.
-INLINE bool upperMillisOver(bool count) {
+// Tells whether the clock has come to the end of a millisecond limit, or of a lap of it. Only while
+// interrupts are off.
+INLINE bool upperMillisOver() {
+  return static_cast<int16_t>(millisCount() - upperMotion.endMillis) >= 0;
+}
+
+// What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
+// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+INLINE void upperCountOn(uint8_t mode, bool lapOver) {
   auto &motion = upperMotion;
-  if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;
-  if (motion.endLaps == 0) return true;
-  if (count) {
-    --motion.endLaps;
+  if (motion.rest == 0) {
+    --motion.restHigh;
+  } else if (lapOver) {
     motion.endMillis += 0x4000;
+    if (--motion.laps) return;
+    if (motion.lapsHigh) {
+      --motion.lapsHigh;
+    } else {
+      motion.mode = mode & ~kLaps;
+    }
   }
-  return false;
 }
 
 // Where the step interrupt goes on in its rare ways: after the last step of a run (each 255th,
@@ -655,31 +677,38 @@ extern "C" void __vector_upper_boundary() __attribute__((signal, used, externall
 void __vector_upper_boundary() {
   auto &motion = upperMotion;
   const uint8_t mode = motion.mode;
+  uint8_t run = 255;  // steps to count down now; 1 to think before each
+  bool over = false;
   if (mode & kThink) {
-    // No lap ends before a call has taken effect: the first one ends 16 s after it, or later.
-    if ((mode & kCoast) || upperMillisOver(!motion.next.select)) {
+    run = 1;
+    over = upperMillisOver();
+    if ((mode & kCoast) || (over && !(mode & kLaps))) {
       upperCount = 1;  // there was no step
       upperCoilsOff();
-      upperHalt(0);
+      upperHalt(mode);
       return;
     }
     upperStep();
   }
-  if (motion.next.select) upperRunTimer(motion.elapsed);
+  if (motion.next.select) {
+    // The first step after a call: no lap ends yet, and *rest* cannot be 0 where there is no limit.
+    upperRunTimer(motion.elapsed);
+  } else if (run == 1) {
+    upperCountOn(mode, over);
+  }
   const uint16_t rest = motion.rest;
-  uint8_t run = motion.run;
-  if (rest < run) {
-    // kThink never comes without kEndless here; naming both shows it to who counts the worst case.
-    if ((mode & (kEndless | kThink)) || motion.restHigh) {
+  if (run == 255 && rest < 255) {
+    if ((mode & kEndless) || motion.restHigh) {
       --motion.restHigh;
-    } else if (rest) {
-      run = rest;
     } else {
-      // The rotor is still on its way: the coils go off one interval after the last step.
-      upperReached(kThink | kCoast);
-      motion.rest = motion.restHigh = -1;
-      upperCount = 1;
-      return;
+      run = rest;
+      if (!run) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        upperReached((mode & kReverse) | kThink | kCoast);
+        motion.rest = motion.restHigh = -1;
+        upperCount = 1;
+        return;
+      }
     }
   }
   motion.rest = rest - run;
@@ -706,7 +735,7 @@ int8_t upperSetSpeed(
   if (timerTop32virtual == 0 || !(control & MOTOR_CTRL_DRV_EN)) {
     const Masked masked;
     upperCoilsOff();
-    upperHalt(0);
+    upperHalt(upperMotion.mode);
     return timerTop32virtual == 0 ? 0 : MOTOR_WARN_NOT_ENABLED;
   }
   constexpr uint8_t kKnown = MOTOR_CTRL_DRV_EN | MOTOR_CTRL_ENDPOINT_MILLIS | MOTOR_CTRL_DIRECTION;
@@ -731,13 +760,13 @@ int8_t upperSetSpeed(
   __uint24 laps = millis >> 14;
   uint16_t wait = millis & 0x3FFF;
   if (laps) {
-    --laps;
     wait += 0x4000;
+    if (--laps) mode |= kLaps;
   }
   const uint32_t rest = limit - 1;
   const Setting setting = chooseSetting(timerTop32virtual);
   const uint8_t entry = setting.select - 1 + (mode & kThink ? 5 : 0);
-  const uint16_t elapsed = pgm_read_byte(&upperElapsed[entry]);
+  const uint8_t elapsed = pgm_read_byte(&upperElapsed[entry]);
   const Masked masked;
   const uint8_t before = motion.mode;
   const uint32_t here = upperPosition();
@@ -745,9 +774,9 @@ int8_t upperSetSpeed(
   motion.rest = rest;
   motion.restHigh = rest >> 16;
   upperCount = 1;
-  motion.run = mode & kThink ? 1 : 255;
   motion.endMillis = millisCount() + wait;
-  motion.endLaps = laps;
+  motion.laps = laps;
+  motion.lapsHigh = (laps - 1) >> 8;
   motion.next = setting;
   motion.elapsed = elapsed;
   motion.status = MOTOR_STAT_SPIN_FIXED;
@@ -769,8 +798,8 @@ uint8_t upperReadStatus() {
   const Masked masked;
   uint8_t status = upperMotion.status;
   // A millisecond limit ends on time, though the next step may be far away.
-  const bool limited = (upperMotion.mode & (kThink | kCoast)) == kThink;
-  if (limited && upperMillisOver(false)) status |= MOTOR_STAT_REACHED;
+  const bool limited = (upperMotion.mode & (kThink | kLaps)) == kThink;
+  if (limited && upperMillisOver()) status |= MOTOR_STAT_REACHED;
   return status;
 }
 

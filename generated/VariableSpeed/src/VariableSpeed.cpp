@@ -37,7 +37,6 @@ extern "C" volatile unsigned long timer0_millis;
 
 // What a motor is doing.
 constexpr uint8_t kThink = 0x01;    // look at the clock before the step; the interrupt's bit 0
-constexpr uint8_t kCoast = 0x02;    // the last step is made, the coils are still on
 constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
@@ -165,9 +164,9 @@ SHARED void motorEnergise() {
 // from 1 on; then the same when it made the step itself; then both with a limit in
 // milliseconds.
 static const uint8_t motorElapsed[] PROGMEM = {
-    180, 22, 2, 0, 0,
+    179, 22, 2, 0, 0,
     193, 24, 3, 0, 0,
-    220, 27, 3, 0, 0,
+    219, 27, 3, 0, 0,
     233, 29, 3, 0, 0,
 };
 
@@ -185,8 +184,8 @@ SHARED void motorRunTimer(uint8_t elapsed) {
   Setting &next = near(motorMotion).next;
   TCCR1B = _BV(WGM13) | _BV(WGM12);
   TCCR1A = 0;
-  OCR1A = next.top;
   TCNT1 = elapsed;
+  OCR1A = next.top;
   TIFR1 = _BV(TOV1);  // the old setting makes no step any more
   TCCR1A = _BV(WGM11) | _BV(WGM10);
   OCR1A = next.top;
@@ -204,7 +203,7 @@ SHARED void motorTakeOver() {
 }
 
 // Timer 1 overflow: one step, 32 cycles from the interrupt's response to RETI, 51 with a look at
-// the clock; at most 840 when it goes on in __vector_motor_boundary. The wires change 21 cycles
+// the clock; at most 837 when it goes on in __vector_motor_boundary. The wires change 21 cycles
 // after the timer wraps (45 before a boundary). It writes port B and nothing else that the sketch
 // can see. Behind each instruction stand its cycles.
 ISR(TIMER1_OVF_vect, ISR_NAKED) {

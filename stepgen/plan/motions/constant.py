@@ -18,5 +18,5 @@ def plan(spec: Constant) -> Motion:
         thinking_cycles=0,
         limit_cycles=0,
         masked_cycles=285,
-        setting_cycles=38,
+        setting_cycles=24,
     )

@@ -13,9 +13,9 @@ def plan(spec: UpdateEvents) -> Motion:
     return Motion(
         kind=spec.kind,
         watches_clock=True,
-        handler_cycles=618,
-        to_clock_cycles=56,
-        thinking_cycles=60,
+        handler_cycles=632,
+        to_clock_cycles=53,
+        thinking_cycles=59,
         limit_cycles=40,
         masked_cycles=520,
         dumps=spec.debug,
