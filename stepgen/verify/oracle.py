@@ -4,7 +4,7 @@ The oracle: the reference model, fed with what happened on the chip.
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
 from stepgen.plan.model import Plan
@@ -104,6 +104,15 @@ class _StatusRead:
 
 
 @dataclass(frozen=True)
+class _MissedRead:
+    """
+    The same call reads how many steps came too late: in its third section.
+    """
+
+    answer: Answer
+
+
+@dataclass(frozen=True)
 class _PositionRead:
     """
     The same call reads the position: in its second section. Steps may come in between.
@@ -112,7 +121,7 @@ class _PositionRead:
     answer: Answer
 
 
-_Happening = _Told | _StatusRead | _PositionRead
+_Happening = _Told | _StatusRead | _PositionRead | _MissedRead
 _Row = tuple[int, _Order, _Happening]
 
 
@@ -130,6 +139,8 @@ class Oracle:
         self._model = MotorModel(subject.facts, self._service_cycle)
         self._edges: list[Edge] = []
         self._millis = 0
+        self._own: set[int] = set()
+        self._later: dict[int, int] = {}
 
     def predict(self, result: Comparison) -> list[Edge]:
         """
@@ -145,6 +156,8 @@ class Oracle:
                     self._compare_status(cycle, answer, result)
                 case _PositionRead(answer):
                     self._compare_position(cycle, answer, result)
+                case _MissedRead(answer):
+                    self._compare_missed(cycle, answer, result)
         self._advance(self._scene.until_cycle)
         return self._edges
 
@@ -155,13 +168,34 @@ class Oracle:
         """
         return self._model.needs
 
+    def served(self, runs: Sequence[Run]) -> list[Run]:
+        """
+        Return *runs*, those that served a later deadline in place of their own as if raised at it.
+        """
+        later = self._later
+        return [
+            replace(run, raised=later[run.raised], serves_later=True) if run.raised in later else run
+            for run in runs
+        ]
+
     def _service_cycle(self, deadline: int) -> int:
         tolerance = self._scene.tolerance_cycles
         place = bisect_left(self._raised, deadline - tolerance)
         if place < len(self._runs) and self._raised[place] <= deadline + tolerance:
+            self._own.add(self._raised[place])
             return self._runs[place].entered
+        if place and self._serves_later(self._runs[place - 1], deadline):
+            before = self._runs[place - 1]
+            self._later[before.raised] = deadline
+            return max(deadline, before.entered)
         # Nobody served it. A call that masks the interrupts before it could be served comes first.
         return self._scene.trace.served_from(deadline)
+
+    def _serves_later(self, run: Run, deadline: int) -> bool:
+        """
+        Tell whether *run*, raised for something that is no deadline, made the step of *deadline*.
+        """
+        return run.raised not in self._own and any(write.cycle > deadline for write in run.writes)
 
     def _advance(self, cycle: int) -> None:
         self._edges.extend(self._model.advance(cycle))
@@ -186,6 +220,12 @@ class Oracle:
         if answer.position != position:
             result.report(f"position {answer.position} at cycle {cycle}, the model says {position}")
 
+    def _compare_missed(self, cycle: int, answer: Answer, result: Comparison) -> None:
+        self._advance(cycle)
+        overruns = self._model.overruns
+        if answer.missed != overruns:
+            result.report(f"{answer.missed} missed at cycle {cycle}, the model says {overruns}")
+
     def _rows(self) -> Iterator[_Row]:
         """
         Yield everything that happened to the motor, each with its cycle, in no order.
@@ -194,6 +234,8 @@ class Oracle:
         for answer in self._scene.answers:
             if answer.call.motor == self._index:
                 yield from _rows_of_call(answer, trace)
+                if subject.facts.overrun_cycles is not None:
+                    yield from _rows_of_missed(answer, trace)
         for start in trace.clock_starts(subject.timer):
             clock_on = ClockOn(start.cycle, start.prescaler, start.tcnt)
             yield start.cycle, _Order.CLOCK, _Told(clock_on)
@@ -215,9 +257,20 @@ def _rows_of_call(answer: Answer, trace: Trace) -> Iterator[_Row]:
     if stimulus is not None:
         yield cycle, _Order.CALL, _Told(stimulus, answer)
         return
+    if answer.call.kind is not CallKind.READ:
+        return
     second = trace.commit(answer.begin_cycle, answer.end_cycle, 1) or first
     yield cycle, _Order.CALL, _StatusRead(answer)
     yield second[0], _Order.CALL, _PositionRead(answer)
+
+
+def _rows_of_missed(answer: Answer, trace: Trace) -> Iterator[_Row]:
+    """
+    Yield the reading of the missed steps, where the call of *answer* does so.
+    """
+    third = trace.commit(answer.begin_cycle, answer.end_cycle, 2)
+    if answer.call.kind is CallKind.READ and third:
+        yield third[0], _Order.CALL, _MissedRead(answer)
 
 
 def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:

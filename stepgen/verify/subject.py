@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from stepgen.devices import Board, PortBit, Timer
-from stepgen.plan.model import Plan
+from stepgen.plan.model import MotorPlan, Plan
 from stepgen.reference.contract import MotionKind, TimingKind
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.sequences import coils_off, phases
@@ -67,7 +67,9 @@ class Subject:
 
 def subjects(loaded: LoadedSpec, plan: Plan) -> tuple[Subject, ...]:
     """
-    Return the motors of *loaded*; the planner's choice of timer and range comes from *plan*.
+    Return the motors of *loaded*; the planner's choices come from *plan*.
+
+    Those are timer, range, and from which lateness on a step counts as missed.
     """
     wires = {name: _wires(motor.drive, plan.board) for name, motor in loaded.spec.motors.items()}
     users = Counter(bit for bits in wires.values() for bit in bits)
@@ -78,7 +80,7 @@ def subjects(loaded: LoadedSpec, plan: Plan) -> tuple[Subject, ...]:
         found.append(
             Subject(
                 name=name,
-                facts=_facts(motor, plan, shares_enables=bool(shared)),
+                facts=_facts(motor, planned, plan, shares_enables=bool(shared)),
                 wires=wires[name],
                 vector=plan.board.mcu.vector(planned.timing.vector).number,
                 timer=planned.timing.timer,
@@ -96,7 +98,9 @@ def _masks(bits: Iterable[PortBit]) -> dict[str, int]:
     return masks
 
 
-def _facts(motor: Motor, plan: Plan, *, shares_enables: bool) -> MotorFacts:
+def _facts(
+    motor: Motor, planned: MotorPlan, plan: Plan, *, shares_enables: bool
+) -> MotorFacts:
     drive: Any = motor.drive
     kind: Literal["four-wire", "motor-shield"] = drive.kind
     motion_spec: Any = motor.motion
@@ -112,6 +116,7 @@ def _facts(motor: Motor, plan: Plan, *, shares_enables: bool) -> MotorFacts:
         motion=motion,
         timing=timing,
         shares_enables=shares_enables,
+        overrun_cycles=planned.hot_path.overrun_cycles,
     )
 
 
