@@ -13,9 +13,12 @@ from stepgen.verify.scenarios import BACK, DRIVE, MILLIS, Action, Scenario, Wait
 _ROUND_CYCLES = 4  # of the loop that holds up
 _AROUND_CYCLES = 20  # more than it takes to begin and to end, an instruction included
 _LAP_CYCLES = 2048
-# A lap, a lap and little or much more, and more laps than a byte counts.
+# A lap, a lap and little or much more, two laps, and several.
 _PERIODS = (2_048, 2_055, 2_500, 4_088, 4_096, 20_011)
-_LONG_PERIOD = 256 * _LAP_CYCLES + 1_024
+_LONG_PERIODS = tuple(laps * _LAP_CYCLES + 24 for laps in (256, 257))  # more than a byte counts
+_MANY_HOLDS = 700  # more than 256 of them come upon a step
+_SWEEP_HOLDS = 2_500  # some let a last lap be served in the very tick in which the step is due
+_SWEEP_PERIOD = _LAP_CYCLES + 64
 _RANDOM_HOLDS = 250
 _SEED = 20_260_301
 
@@ -33,6 +36,16 @@ def late_scenarios(plan: Plan) -> Iterator[Scenario]:
                 Loop.BUSY,
                 tuple(_everywhere(index, cycles)),
             )
+        yield Scenario(
+            f"{motor.name}: interrupts held up where a step ends very many laps",
+            Loop.BUSY,
+            tuple(_after_many_laps(index)),
+        )
+        yield Scenario(
+            f"{motor.name}: interrupts held up very often",
+            Loop.BUSY,
+            tuple(_often(index)),
+        )
         yield Scenario(
             f"{motor.name}: interrupts held up at random",
             Loop.HOSTILE,
@@ -71,13 +84,37 @@ def _everywhere(motor: int, cycles: int) -> Iterator[Action]:
         yield read
         yield Wait(3 * period)
         yield read
-    yield Call(CallKind.SET_SPEED, motor, DRIVE, _LONG_PERIOD)
-    for _ in range(20):
-        yield Wait(_LONG_PERIOD // 9)
-        yield hold_up(cycles)
-    yield read
     yield Call(CallKind.SET_SPEED, motor, 0, 0)
     yield read
+
+
+def _after_many_laps(motor: int) -> Iterator[Action]:
+    """
+    Hold up the first step from rest, whose moment is known; see the next one come in its time.
+    """
+    for period in _LONG_PERIODS:
+        for before in (100, 700):
+            yield Call(CallKind.SET_SPEED, motor, DRIVE, period)
+            yield Wait(period - before)
+            yield hold_up(LONGEST_OVERRUN_CYCLES)
+            yield Wait(2 * period)
+            yield Call(CallKind.READ, motor)
+            yield Call(CallKind.SET_SPEED, motor, 0, 0)
+
+
+def _often(motor: int) -> Iterator[Action]:
+    """
+    Count past a byte; before, let the last lap wait until about the step, at every cycle.
+    """
+    yield Call(CallKind.SET_SPEED, motor, DRIVE, _SWEEP_PERIOD)
+    for index in range(_SWEEP_HOLDS):
+        yield Wait(1 + index % 97)
+        yield hold_up(1_070 + index % 20)
+    yield Call(CallKind.READ, motor)
+    for index in range(_MANY_HOLDS):
+        yield Wait(1 + index % 97)
+        yield hold_up(LONGEST_OVERRUN_CYCLES)
+    yield Call(CallKind.READ, motor)
 
 
 def random_holds(motor: int, seed: int, count: int) -> Iterator[Action]:
@@ -91,6 +128,6 @@ def random_holds(motor: int, seed: int, count: int) -> Iterator[Action]:
             period = random.choice([*_PERIODS, random.randrange(2_048, 70_000)])
             limit = random.choice([0, 0, random.randrange(1, 200)])
             yield Call(CallKind.SET_SPEED, motor, control, period, limit)
-        yield Wait(random.randrange(1, 20_000))
+        yield Wait(int(2 ** random.uniform(0, 15)))
         yield hold_up(random.randrange(100, LONGEST_OVERRUN_CYCLES))
         yield Call(CallKind.READ, motor)

@@ -76,7 +76,7 @@ def run_scenario(
         answers = tuple(bench.answers)
         cycle, tolerance = bench.machine.cycle, simulator.tolerance_cycles
         scene = Scene(trace, answers, plan, cycle, tolerance)
-        motors = subjects(loaded, plan)
+        motors = subjects(loaded, plan, elf)
         comparisons = tuple(compare(motor, i, scene) for i, motor in enumerate(motors))
         return Outcome(
             scenario=scenario,
