@@ -34,7 +34,8 @@ class CallKind(IntEnum):
     """
     Which function is called: of a motor or, from 12 on, of the library, avr-libc or the sketch.
 
-    HOLD_UP keeps interrupts off for four cycles *top* times, 65535 at most, and a few more. DIVIDE_CLOCK sets CLKPR: the clock is divided by 2 to the power of *control*. The last two
+    HOLD_UP keeps interrupts off for four cycles *top* times, 65535 at most, and a few more.
+    DIVIDE_CLOCK sets CLKPR: the clock is divided by 2 to the power of *control*. The last two
     give their result as the position.
     """
 

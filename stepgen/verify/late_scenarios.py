@@ -5,11 +5,16 @@ Scenarios for motors that count the steps that come too late: a sketch holds int
 from collections.abc import Iterator
 from random import Random
 
-from stepgen.plan.model import MotorPlan, Plan
+from stepgen.plan.model import Plan
 from stepgen.plan.timings.compare import LONGEST_OVERRUN_CYCLES, LONGEST_WAIT_CYCLES
 from stepgen.verify.bench import Call, CallKind, Loop
 from stepgen.verify.scenarios import BACK, DRIVE, MILLIS, Action, Scenario, Wait
 
+_LENGTHS = (
+    ("as long as allowed", LONGEST_WAIT_CYCLES),
+    ("a little too long", LONGEST_WAIT_CYCLES + 100),
+    ("nearly as long as can be told", LONGEST_OVERRUN_CYCLES),
+)
 _ROUND_CYCLES = 4  # of the loop that holds up
 _AROUND_CYCLES = 20  # more than it takes to begin and to end, an instruction included
 _LAP_CYCLES = 2048
@@ -30,7 +35,7 @@ def late_scenarios(plan: Plan) -> Iterator[Scenario]:
     for index, motor in enumerate(plan.motors):
         if motor.hot_path.overrun_cycles is None:
             continue
-        for name, cycles in _lengths(motor):
+        for name, cycles in _LENGTHS:
             yield Scenario(
                 f"{motor.name}: interrupts held up for {name}",
                 Loop.BUSY,
@@ -58,12 +63,6 @@ def hold_up(cycles: int) -> Call:
     Return the call that keeps interrupts off for *cycles*, less a few.
     """
     return Call(CallKind.HOLD_UP, top=(cycles - _AROUND_CYCLES) // _ROUND_CYCLES)
-
-
-def _lengths(motor: MotorPlan) -> Iterator[tuple[str, int]]:
-    yield "as long as allowed", LONGEST_WAIT_CYCLES
-    yield "a little too long", LONGEST_WAIT_CYCLES + 100
-    yield "nearly as long as can be told", LONGEST_OVERRUN_CYCLES
 
 
 def _everywhere(motor: int, cycles: int) -> Iterator[Action]:

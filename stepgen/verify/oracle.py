@@ -3,26 +3,21 @@ The oracle: the reference model, fed with what happened on the chip.
 """
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from enum import IntEnum
 
 from stepgen.plan.model import Plan
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sharing import Need
-from stepgen.reference.stimuli import (
-    Callbacks,
-    ClockOn,
-    Edge,
-    Hold,
-    Init,
-    MillisTick,
-    Release,
-    SetSpeed,
-    Stimulus,
-    UpdateCheck,
+from stepgen.reference.stimuli import Edge, MillisTick, Stimulus
+from stepgen.verify.bench import Answer
+from stepgen.verify.happenings import (
+    MissedRead,
+    PositionRead,
+    StatusRead,
+    Told,
+    happenings,
 )
-from stepgen.verify.bench import Answer, CallKind
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run, Trace
 
@@ -74,57 +69,6 @@ class Scene:
     tolerance_cycles: int = 0
 
 
-class _Order(IntEnum):
-    """
-    What comes first in one cycle: a call sees the new millis, a clock is set by the call.
-    """
-
-    MILLIS = 0
-    CALL = 1
-    CLOCK = 2
-
-
-@dataclass(frozen=True)
-class _Told:
-    """
-    The model is told of *stimulus*; *answer* is the call that it was, if it was one.
-    """
-
-    stimulus: Stimulus
-    answer: Answer | None = None
-
-
-@dataclass(frozen=True)
-class _StatusRead:
-    """
-    A call reads the status: in its first section with interrupts off.
-    """
-
-    answer: Answer
-
-
-@dataclass(frozen=True)
-class _MissedRead:
-    """
-    The same call reads how many steps came too late: in its third section.
-    """
-
-    answer: Answer
-
-
-@dataclass(frozen=True)
-class _PositionRead:
-    """
-    The same call reads the position: in its second section. Steps may come in between.
-    """
-
-    answer: Answer
-
-
-_Happening = _Told | _StatusRead | _PositionRead | _MissedRead
-_Row = tuple[int, _Order, _Happening]
-
-
 class Oracle:
     """
     The model of motor number *index*, told and asked in the order of cycles.
@@ -146,17 +90,19 @@ class Oracle:
         """
         Return all edges of the model; report each code, status or position that differs.
         """
-        for cycle, _, happening in sorted(self._rows(), key=lambda row: row[:2]):
+        scene = self._scene
+        rows = happenings(self._subject, self._index, scene.trace, scene.answers, scene.plan.board)
+        for cycle, _, happening in sorted(rows, key=lambda row: row[:2]):
             if cycle > self._scene.until_cycle:
                 break
             match happening:
-                case _Told(stimulus, answer):
+                case Told(stimulus, answer):
                     self._tell(stimulus, answer, result)
-                case _StatusRead(answer):
+                case StatusRead(answer):
                     self._compare_status(cycle, answer, result)
-                case _PositionRead(answer):
+                case PositionRead(answer):
                     self._compare_position(cycle, answer, result)
-                case _MissedRead(answer):
+                case MissedRead(answer):
                     self._compare_missed(cycle, answer, result)
         self._advance(self._scene.until_cycle)
         return self._edges
@@ -174,7 +120,9 @@ class Oracle:
         """
         later = self._later
         return [
-            replace(run, raised=later[run.raised], serves_later=True) if run.raised in later else run
+            replace(run, raised=later[run.raised], serves_later=True)
+            if run.raised in later
+            else run
             for run in runs
         ]
 
@@ -225,66 +173,3 @@ class Oracle:
         overruns = self._model.overruns
         if answer.missed != overruns:
             result.report(f"{answer.missed} missed at cycle {cycle}, the model says {overruns}")
-
-    def _rows(self) -> Iterator[_Row]:
-        """
-        Yield everything that happened to the motor, each with its cycle, in no order.
-        """
-        trace, subject = self._scene.trace, self._subject
-        for answer in self._scene.answers:
-            if answer.call.motor == self._index:
-                yield from _rows_of_call(answer, trace)
-                if subject.facts.overrun_cycles is not None:
-                    yield from _rows_of_missed(answer, trace)
-        for start in trace.clock_starts(subject.timer):
-            clock_on = ClockOn(start.cycle, start.prescaler, start.tcnt)
-            yield start.cycle, _Order.CLOCK, _Told(clock_on)
-        board = self._scene.plan.board
-        vector = board.mcu.vector("TIMER0_OVF_vect").number
-        for cycle, millis in trace.millis_ticks(vector, board.f_cpu_hz):
-            yield cycle, _Order.MILLIS, _Told(MillisTick(cycle, millis))
-
-
-def _rows_of_call(answer: Answer, trace: Trace) -> Iterator[_Row]:
-    """
-    Yield what the call of *answer* does, at the cycles where it switches the interrupts off.
-    """
-    first = trace.commit(answer.begin_cycle, answer.end_cycle)
-    if first is None:
-        return
-    cycle = first[0]
-    stimulus = _stimulus(answer, cycle)
-    if stimulus is not None:
-        yield cycle, _Order.CALL, _Told(stimulus, answer)
-        return
-    if answer.call.kind is not CallKind.READ:
-        return
-    second = trace.commit(answer.begin_cycle, answer.end_cycle, 1) or first
-    yield cycle, _Order.CALL, _StatusRead(answer)
-    yield second[0], _Order.CALL, _PositionRead(answer)
-
-
-def _rows_of_missed(answer: Answer, trace: Trace) -> Iterator[_Row]:
-    """
-    Yield the reading of the missed steps, where the call of *answer* does so.
-    """
-    third = trace.commit(answer.begin_cycle, answer.end_cycle, 2)
-    if answer.call.kind is CallKind.READ and third:
-        yield third[0], _Order.CALL, _MissedRead(answer)
-
-
-def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:
-    """
-    Return what the model is told of the call of *answer*; nothing of one that only reads.
-    """
-    call = answer.call
-    update = (call.modification, call.interval, call.count)
-    stimuli: dict[CallKind, Stimulus] = {
-        CallKind.SET_SPEED: SetSpeed(cycle, call.control, call.top, call.limit, *update),
-        CallKind.HOLD: Hold(cycle),
-        CallKind.RELEASE: Release(cycle),
-        CallKind.INIT: Init(cycle),
-        CallKind.UPDATE_CHECK: UpdateCheck(cycle),
-        CallKind.CALLBACKS: Callbacks(cycle, bool(call.control & 1), bool(call.control & 2)),
-    }
-    return stimuli.get(call.kind)

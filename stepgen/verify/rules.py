@@ -140,7 +140,9 @@ def _late_edges(
             call.control & Control.ENDPOINT_MILLIS and call.limit
         )
         latest = motor.isr_bound_cycles if thinks else path.boundary_edge_cycles + WAKE_CYCLES
-        overrun = path.overrun_cycles is not None and run.entered - run.raised >= path.overrun_cycles
+        overrun = (
+            path.overrun_cycles is not None and run.entered - run.raised >= path.overrun_cycles
+        )
         latest += motor.gate.late_cycles if overrun or run.serves_later else 0
         taken = run.writes[-1].cycle - run.entered
         if taken > latest:

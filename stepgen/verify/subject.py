@@ -18,9 +18,9 @@ from stepgen.reference.sequences import coils_off, phases
 from stepgen.spec import LoadedSpec, Motor
 from stepgen.verify.elf import read_firmware
 
-# PWM A and B, then DIR A and B: of the shield, and of one stacked upon another.
 _VECTOR_BYTES = 4
 _RJMP = 0xC000
+# PWM A and B, then DIR A and B: of the shield, and of one stacked upon another.
 _SHIELD_ENABLES = ("D3", "D11")
 _SHIELD_DIRECTIONS = {False: ("D12", "D13"), True: ("D9", "D8")}
 

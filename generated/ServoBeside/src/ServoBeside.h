@@ -101,8 +101,8 @@ int8_t motorSetSpeed(
 uint8_t motorReadStatus();
 
 // How many steps came more than 970 clocks late since motorShieldInit(), because their
-// interrupt was held up; the coils going off counts as one. It wraps at 16 bits. None of them is
-// lost, and the steps after them are on time.
+// interrupt was held up. None of them is lost, and those after them come on time. The coils going
+// off at the end of a move counts as a step. It wraps at 16 bits.
 uint16_t motorReadMissed();
 
 // Where the motor is: 0 after motorShieldInit(), +1 for each step,

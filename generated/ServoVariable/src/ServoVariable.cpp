@@ -189,10 +189,10 @@ INLINE void motorRunTimer() {
 }
 
 // Timer 2 compare match A: one step, 94 cycles from the interrupt's response to RETI, 113 with a
-// look at the clock; at most 817 when it goes on in __vector_motor_boundary. The wires change 82
-// cycles after the match (106 before a boundary). Between two steps it counts laps of the timer, 25
-// cycles each, and 55 for the last of them. It writes port D and nothing else that the sketch can
-// see. Behind each instruction stand its cycles.
+// look at the clock; at most 817 when it comes too late and goes on in __vector_motor_boundary. The
+// wires change 82 cycles after the match (106 before a boundary). Between two steps it counts laps
+// of the timer, 25 cycles each, and 55 for the last of them. It writes port D and nothing else that
+// the sketch can see. Behind each instruction stand its cycles.
 ISR(TIMER2_COMPA_vect, ISR_NAKED) {
   asm volatile(
       "   push  r24                      \n"  // 2
@@ -217,8 +217,8 @@ ISR(TIMER2_COMPA_vect, ISR_NAKED) {
       "   push  r25                      \n"  // 2
       "   lds   r24, %[ocr]              \n"  // 2
       "   lds   r25, %[tcnt]             \n"  // 2
-      "   sub   r25, r24                 \n"  // 1  ticks since the match; too late for what follows,
-      "   cpi   r25, 127                 \n"  // 1  when the next match is as near as it can be?
+      "   sub   r25, r24                 \n"  // 1  ticks since the match: one more,
+      "   cpi   r25, 127                 \n"  // 1  and the next could be missed
       "   brsh  8f                       \n"  // 1
       "   lds   r25, %[last]             \n"  // 2  ticks from the last lap to the step
       "   add   r24, r25                 \n"  // 1
@@ -280,8 +280,8 @@ ISR(TIMER2_COMPA_vect, ISR_NAKED) {
       "7: push  r25                      \n"  // 2
       "   lds   r24, %[ocr]              \n"  // 2
       "   lds   r25, %[tcnt]             \n"  // 2
-      "   sub   r25, r24                 \n"  // 1  ticks since the match; too late for what follows,
-      "   cpi   r25, 127                 \n"  // 1  when the next match is as near as it can be?
+      "   sub   r25, r24                 \n"  // 1  ticks since the match: one more,
+      "   cpi   r25, 127                 \n"  // 1  and the next could be missed
       "   brsh  9b                       \n"  // 1
       "   lds   r25, %[first]            \n"  // 2  ticks from this step to the first lap
       "   add   r24, r25                 \n"  // 1
@@ -377,8 +377,8 @@ ISR(TIMER2_COMPA_vect, ISR_NAKED) {
         [nextLast] "i"(&motorMotion.next.last),
         [missed] "i"(&motorMotion.missed),
         [status] "i"(&motorMotion.status),
-        [match] "M"(_BV(OCF2A)),
-        [statMissed] "M"(MOTOR_STAT_MISSED),
+        [match] "n"(_BV(OCF2A)),
+        [statMissed] "n"(MOTOR_STAT_MISSED),
         [ring] "i"(motorRing),
         [port0] "I"(_SFR_IO_ADDR(PORTD))
       : "memory");

@@ -11,8 +11,11 @@ from stepgen.plan.timings.compare import LONGEST_WAIT_CYCLES
 @dataclass(frozen=True)
 class CompareView:
     """
-    Names of a timer's registers and bits; *clock* selects the prescaler of 8, and
-    *longest_wait* is how many clocks an interrupt may wait without harm.
+    Names of a timer's registers and bits.
+
+    Args:
+        clock: Selects the prescaler of 8.
+        longest_wait: How many clocks its interrupt may wait without harm.
     """
 
     number: int
