@@ -110,9 +110,12 @@ def _often(motor: int) -> Iterator[Action]:
         yield Wait(1 + index % 97)
         yield hold_up(1_070 + index % 20)
     yield Call(CallKind.READ, motor)
+    yield Call(CallKind.SET_SPEED, motor, DRIVE, _LAP_CYCLES)
     for index in range(_MANY_HOLDS):
         yield Wait(1 + index % 97)
         yield hold_up(LONGEST_OVERRUN_CYCLES)
+    yield Call(CallKind.READ, motor)
+    yield Call(CallKind.INIT, motor)
     yield Call(CallKind.READ, motor)
 
 
