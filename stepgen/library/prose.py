@@ -149,7 +149,8 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
         f"the interrupt's response to RETI{clock}; at most {motor.isr_bound_cycles} when it{late} "
         f"goes on in {motor.handler}. The wires change {path.edge_cycles} cycles after "
         f"{timing.instant} ({path.boundary_edge_cycles} before a boundary).{laps} It writes port "
-        f"{ports} and nothing else that the sketch can see. Behind each instruction stand its cycles."
+        f"{ports} and nothing else that the sketch can see. Behind each instruction stand its "
+        "cycles."
     )
 
 
