@@ -10,51 +10,24 @@ from stepgen.plan.instructions import Gate, Instruction, Storage
 
 _TICK_CYCLES = 8
 _LATE_TICKS = 127  # the next match is 128 ticks after this one, or more; OCR2A must be moved before
+_FIELDS = (
+    ("laps", "now.laps"),
+    ("lapsHigh", "now.lapsHigh"),
+    ("last", "now.last"),
+    ("first", "next.first"),
+    ("nextLaps", "next.laps"),
+    ("nextLapsHigh", "next.lapsHigh"),
+    ("nextLast", "next.last"),
+    ("missed", "missed"),
+    ("status", "status"),
+)
 
 
 def gate(timer: Timer8, storage: Storage, mcu: Mcu) -> Gate:
     """
     Return the count of laps, which each interrupt passes on its way to the step.
     """
-    count = (
-        Instruction("lds   r24, %[laps]", 2, "one compare match less of this interval"),
-        Instruction("dec   r24", 1),
-        Instruction("sts   %[laps], r24", 2),
-        Instruction("breq  6f", 1),
-    )
-    leave = (
-        Instruction(
-            storage.scratch.load("r24", "scratch").text, 1, "a lap, and no step yet", label="5"
-        ),
-        Instruction("out   %[sreg], r24", 1),
-        Instruction("pop   r24", 2),
-        Instruction("reti", mcu.response_cycles),
-    )
-    high = (
-        Instruction("lds   r24, %[lapsHigh]", 2, "256 laps less,", label="6"),
-        Instruction("dec   r24", 1),
-        Instruction("sts   %[lapsHigh], r24", 2),
-        Instruction("brpl  5b", 1, "which are still to come; or"),
-        Instruction("sbrs  r24, 0", 1, "255: this is the last lap,"),
-        Instruction("rjmp  7f", 2, "254: the step after it"),
-    )
-    last = (
-        Instruction("ldi   r24, 1", 1),
-        Instruction("sts   %[laps], r24", 2, "the next match is the step"),
-        *_lateness("8f"),
-        *_move("last", "ticks from the last lap to the step"),
-        Instruction("pop   r25", 2),
-        Instruction("rjmp  5b", 2),
-    )
-    step = (
-        *_lateness("9b", label="7"),
-        *_move("first", "ticks from this step to the first lap"),
-        *_copy("nextLast", "last", "the interval that begins now", label="10"),
-        *_copy("nextLaps", "laps"),
-        Instruction("lds   r24, %[nextLapsHigh]", 2),
-        Instruction("sts   %[lapsHigh], r24", 2, label="11"),
-        Instruction("pop   r25", 2),
-    )
+    count, leave, high, last, step = _count(), _leave(storage, mcu), _high(), _last(), _step()
     late_last, late_step = _late_last(), _late_step()
     until_high = _cycles(count) + 1  # the branch is taken
     until_step = until_high + _cycles(high)
@@ -71,18 +44,62 @@ def gate(timer: Timer8, storage: Storage, mcu: Mcu) -> Gate:
         late_cycles=latest - until_step - _cycles(step),
         overrun_cycles=(_LATE_TICKS - 1) * _TICK_CYCLES - until_read,
         registers=(("ocr", timer.ocra), ("tcnt", timer.tcnt), ("tifr", timer.tifr)),
-        fields=(
-            ("laps", "now.laps"),
-            ("lapsHigh", "now.lapsHigh"),
-            ("last", "now.last"),
-            ("first", "next.first"),
-            ("nextLaps", "next.laps"),
-            ("nextLapsHigh", "next.lapsHigh"),
-            ("nextLast", "next.last"),
-            ("missed", "missed"),
-            ("status", "status"),
-        ),
+        fields=_FIELDS,
         constants=(("match", f"_BV(OCF{timer.number}A)"), ("statMissed", "MOTOR_STAT_MISSED")),
+    )
+
+
+def _count() -> tuple[Instruction, ...]:
+    return (
+        Instruction("lds   r24, %[laps]", 2, "one compare match less of this interval"),
+        Instruction("dec   r24", 1),
+        Instruction("sts   %[laps], r24", 2),
+        Instruction("breq  6f", 1),
+    )
+
+
+def _leave(storage: Storage, mcu: Mcu) -> tuple[Instruction, ...]:
+    return (
+        Instruction(
+            storage.scratch.load("r24", "scratch").text, 1, "a lap, and no step yet", label="5"
+        ),
+        Instruction("out   %[sreg], r24", 1),
+        Instruction("pop   r24", 2),
+        Instruction("reti", mcu.response_cycles),
+    )
+
+
+def _high() -> tuple[Instruction, ...]:
+    return (
+        Instruction("lds   r24, %[lapsHigh]", 2, "256 laps less,", label="6"),
+        Instruction("dec   r24", 1),
+        Instruction("sts   %[lapsHigh], r24", 2),
+        Instruction("brpl  5b", 1, "which are still to come; or"),
+        Instruction("sbrs  r24, 0", 1, "255: this is the last lap,"),
+        Instruction("rjmp  7f", 2, "254: the step after it"),
+    )
+
+
+def _last() -> tuple[Instruction, ...]:
+    return (
+        Instruction("ldi   r24, 1", 1),
+        Instruction("sts   %[laps], r24", 2, "the next match is the step"),
+        *_lateness("8f"),
+        *_move("last", "ticks from the last lap to the step"),
+        Instruction("pop   r25", 2),
+        Instruction("rjmp  5b", 2),
+    )
+
+
+def _step() -> tuple[Instruction, ...]:
+    return (
+        *_lateness("9b", label="7"),
+        *_move("first", "ticks from this step to the first lap"),
+        *_copy("nextLast", "last", "the interval that begins now", label="10"),
+        *_copy("nextLaps", "laps"),
+        Instruction("lds   r24, %[nextLapsHigh]", 2),
+        Instruction("sts   %[lapsHigh], r24", 2, label="11"),
+        Instruction("pop   r25", 2),
     )
 
 
