@@ -11,7 +11,7 @@ from stepgen.plan.model import MotorPlan
 
 THINK_BIT = 0
 CLOCK_BIT = 5
-_LINE_WIDTH = 31
+_LINE_WIDTH = 34
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,8 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
         operands.append(_register_operand(name, register))
     for name, member in motor.gate.fields:
         operands.append(f'[{name}] "i"(&{motor.name}Motion.{member})')
+    for name, constant in motor.gate.constants:
+        operands.append(f'[{name}] "n"({constant})')
     kernel = motor.kernel
     if isinstance(kernel, Ring):
         operands.append(f'[ring] "i"({motor.name}Ring)')
@@ -67,8 +69,9 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
 
 
 def _line(instruction: Instruction) -> Line:
-    label = f"{instruction.label}:" if instruction.label else ""
-    text = f'"{label:<3}{instruction.text:<{_LINE_WIDTH}}\\n"'
+    label = f"{instruction.label}:" if instruction.label else "  "
+    words = f"{label} {instruction.text}"
+    text = f'"{words:<{_LINE_WIDTH}}\\n"'
     cycles = str(instruction.cycles) if instruction.cycles else " "
     return Line(text, f"  // {cycles}  {instruction.note}".rstrip())
 

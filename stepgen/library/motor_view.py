@@ -4,7 +4,7 @@ The view of one motor: names, masks and numbers as finished text.
 
 from dataclasses import dataclass
 
-from stepgen.library.api_view import dump_name
+from stepgen.library.api_view import dump_name, tells_missed
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
 from stepgen.library.kernel_view import Bits, KernelView, bit_groups, kernel_view
 from stepgen.library.prose import isr_contract, release_comment, rest_comment, summary, wiring
@@ -54,6 +54,7 @@ class MotorView:
     timing_name: str
     motion_name: str
     has_updates: bool
+    tells_missed: bool
     dump_name: str
     kernel: KernelView
     timer: TimerView
@@ -98,6 +99,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         timing_name=module_name(motor.timing.kind),
         motion_name=module_name(motor.motion.kind),
         has_updates=motor.motion.watches_clock,
+        tells_missed=tells_missed(motor),
         dump_name=dump_name(motor) if motor.motion.dumps else "",
         kernel=kernel_view(motor.kernel),
         timer=timer_view(motor),

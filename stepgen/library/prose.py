@@ -137,6 +137,7 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
     ports = listed(sorted({wire.pin.bit.port for wire in (*motor.drive.wires, *switched)}))
     clock = f", {path.clock_cycles} with a look at the clock" if motor.motion.watches_clock else ""
     timing = motor.timing
+    late = " comes too late and" if motor.gate.late_cycles else ""
     laps = "".join(
         f" Between two steps it counts laps of the timer, {cycles[0]} cycles each, and "
         f"{cycles[-1]} for the last of them."
@@ -145,10 +146,11 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
     )
     return comment_lines(
         f"Timer {timing.timer.number} {timing.event}: one step, {path.usual_cycles} cycles from "
-        f"the interrupt's response to RETI{clock}; at most {motor.isr_bound_cycles} when it goes "
-        f"on in {motor.handler}. The wires change {path.edge_cycles} cycles after {timing.instant} "
-        f"({path.boundary_edge_cycles} before a boundary).{laps} It writes port {ports} and "
-        "nothing else that the sketch can see. Behind each instruction stand its cycles."
+        f"the interrupt's response to RETI{clock}; at most {motor.isr_bound_cycles} when it{late} "
+        f"goes on in {motor.handler}. The wires change {path.edge_cycles} cycles after "
+        f"{timing.instant} ({path.boundary_edge_cycles} before a boundary).{laps} It writes port "
+        f"{ports} and nothing else that the sketch can see. Behind each instruction stand its "
+        "cycles."
     )
 
 

@@ -37,16 +37,23 @@ class Gate:
     Args:
         instructions: It may use r24, and SREG is saved; those that are no step end in it.
         step_cycles: The way through it to the step.
-        lap_cycles: The ways that end in it, RETI included: the usual one, then the longest.
+        lap_cycles: The ways that end in it, RETI included: the usual one, then that of the last.
+        late_cycles: How much longer the way to the step is where something was late, at most.
+        overrun_cycles: How late the interrupt begins, from its flag, where a step counts as missed;
+            here from the end of the composer's prologue. None where that cannot be told.
         registers: The registers that its instructions name.
         fields: The members of the motor's motion that they name.
+        constants: The constants that they name, as C text.
     """
 
     instructions: tuple[Instruction, ...] = ()
     step_cycles: int = 0
     lap_cycles: tuple[int, ...] = ()
+    late_cycles: int = 0
+    overrun_cycles: int | None = None
     registers: tuple[tuple[str, Register], ...] = ()
     fields: tuple[tuple[str, str], ...] = ()
+    constants: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)

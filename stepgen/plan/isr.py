@@ -58,6 +58,8 @@ class HotPath:
         boundary: What follows label 1: the last step of a run, then the boundary handler.
         usual_cycles: Response, vector, all of *usual* on the way of a step.
         lap_cycles: The same of interrupts without a step, in order of length; empty where none is.
+        overrun_cycles: How late an interrupt begins, from its flag to the response, where its step
+            counts as missed; None where that cannot be told.
         clock_cycles: The same with a look at the clock.
         edge_cycles: From the timer's flag to the end of the last port write, on the usual way.
         boundary_edge_cycles: The same on the boundary's way.
@@ -70,6 +72,7 @@ class HotPath:
     boundary: tuple[Instruction, ...]
     usual_cycles: int
     lap_cycles: tuple[int, ...]
+    overrun_cycles: int | None
     clock_cycles: int
     edge_cycles: int
     boundary_edge_cycles: int
@@ -136,6 +139,7 @@ def compose(
     onward = (*look, *count, *step, *leave, Instruction("reti", mcu.response_cycles))
     usual_cycles = until_gate + gate.step_cycles + _cycles(onward)
     looked = _CLOCK_TAKEN_CYCLES + _cycles(clock) if watches_clock else 0
+    overrun = gate.overrun_cycles
     due = until_count + looked if watches_clock else until_rare_step + 1
     return HotPath(
         usual=(*entry, *gate.instructions, *onward),
@@ -143,6 +147,7 @@ def compose(
         boundary=(*think, *step, *out),
         usual_cycles=usual_cycles,
         lap_cycles=tuple(until_gate + cycles for cycles in gate.lap_cycles),
+        overrun_cycles=None if overrun is None else overrun - until_gate,
         clock_cycles=usual_cycles + looked,
         edge_cycles=until_step + _cycles_to_edge(step),
         boundary_edge_cycles=until_rare_step + looked + _cycles_to_edge(step),

@@ -96,6 +96,13 @@ class MotorPlan:
         """
         Return the longest that its step interrupt may take, from the response through RETI.
         """
+        return self.punctual_bound_cycles + self.gate.late_cycles
+
+    @property
+    def punctual_bound_cycles(self) -> int:
+        """
+        Return the same of an interrupt that was not held up for too long.
+        """
         return (
             self.hot_path.boundary_entry_cycles
             + self.kernel.handler.longest

@@ -80,12 +80,13 @@ def _minimum_period_cycles(motors: tuple[MotorPlan, ...], faults: Faults) -> int
     Return the shortest period in which no interrupt of any motor can be missed.
 
     Each waits for a call of the library with interrupts off, and for every other interrupt once.
+    Where none is missed, the motor's own interrupt has nothing to make good.
     """
     shortest = 0
     every = sum(motor.isr_bound_cycles for motor in motors)
     for motor in motors:
-        own = motor.isr_bound_cycles
-        interrupts = every - own + MILLIS_INTERRUPT_CYCLES
+        own = motor.punctual_bound_cycles
+        interrupts = every - motor.isr_bound_cycles + MILLIS_INTERRUPT_CYCLES
         masked = _masked_bound_cycles(motors)
         period = shortest_period_cycles(motor.timing, own, interrupts, masked)
         if period is None:

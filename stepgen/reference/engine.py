@@ -87,6 +87,9 @@ class Engine:
             self._serve(deadline)
 
     def _serve(self, deadline: int) -> None:
+        overrun_cycles = self.facts.overrun_cycles
+        if overrun_cycles is not None and self.pace.lateness_cycles(deadline) >= overrun_cycles:
+            self.notices.overrun()
         motion = self.motion
         if motion is None or not self.running:
             self._release(deadline)

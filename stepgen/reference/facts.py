@@ -26,6 +26,8 @@ class MotorFacts:
         motion: Whether its library has update events.
         shares_enables: Whether the wires that switch its coils off are another motor's too.
         timing: What paces it.
+        overrun_cycles: How late an interrupt is served, from its deadline to its response, from
+            which on the step counts as missed; None where the hardware cannot tell.
     """
 
     phases: tuple[Pattern, ...]
@@ -35,6 +37,7 @@ class MotorFacts:
     motion: MotionKind = "constant"
     shares_enables: bool = False
     timing: TimingKind = "fast-pwm"
+    overrun_cycles: int | None = None
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:

@@ -43,7 +43,9 @@ class MotorModel:
     An update event acts from the first deadline after it. One that is due at the step that
     ends the motion, or while a passed millis limit lets no step come, does not happen.
 
-    MISSED is not predicted: in fast PWM the hardware cannot tell a missed period.
+    A deadline that is served too late is an overrun: MISSED is set until the next start, and it is
+    counted until Init. Only of those that `MotorFacts.overrun_cycles` can tell: in fast PWM
+    the hardware does not see a missed period.
 
     Args:
         facts: What the spec decides.
@@ -79,6 +81,13 @@ class MotorModel:
         Return the steps made since Init, backwards ones negative, as int32.
         """
         return self._axis.position
+
+    @property
+    def overruns(self) -> int:
+        """
+        Return the deadlines since Init that were served too late, as uint16.
+        """
+        return self._notices.overruns
 
     @property
     def running(self) -> bool:
@@ -195,6 +204,7 @@ class MotorModel:
     def _init(self, call: Init) -> Code:
         self._engine.forget()
         self._notices.clear()
+        self._notices.overruns = 0
         self._axis.init(call.cycle, len(self._codes))
         return Code.FINE
 

@@ -7,6 +7,8 @@ from typing import Literal
 
 from stepgen.reference.contract import Status
 
+_COUNT_STATES = 1 << 16
+
 CallbackMade = tuple[int, Literal["reached", "fault"]]
 
 
@@ -20,12 +22,14 @@ class Notices:
         has_reached_callback: Whether a callback for a reached end point is registered.
         has_fault_callback: Whether one for faults is registered.
         made: Each callback so far, with the cycle of the check that made it.
+        overruns: Deadlines since Init that were served too late, 16 bits.
     """
 
     status: Status = field(default_factory=lambda: Status(0))
     has_reached_callback: bool = False
     has_fault_callback: bool = False
     made: list[CallbackMade] = field(default_factory=list)
+    overruns: int = 0
     _at_end_point: bool = False
 
     def clear(self) -> None:
@@ -41,6 +45,13 @@ class Notices:
         """
         if bits:
             self.status = self.status & ~Status.FAULT_CALLED | bits
+
+    def overrun(self) -> None:
+        """
+        Count a deadline that was served too late, and set MISSED.
+        """
+        self.status |= Status.MISSED
+        self.overruns = (self.overruns + 1) % _COUNT_STATES
 
     def stopped(self) -> None:
         """

@@ -49,6 +49,12 @@ class Pace:
         if self.interval is not None and clock.prescaler == self.interval.prescaler:
             self.deadline_cycle = first_overflow_cycle(clock.cycle, clock.tcnt, self.interval)
 
+    def lateness_cycles(self, deadline: int) -> int:
+        """
+        Return how much later than *deadline* its service comes.
+        """
+        return self.service_cycle(deadline) - deadline
+
     def served_by(self, cycle: int) -> int | None:
         """
         Return the deadline if its service comes at or before *cycle*, else None.

@@ -25,6 +25,7 @@ class Prediction:
     running: bool
     steps_left: int | None
     callbacks: tuple[CallbackMade, ...] = ()
+    overruns: int = 0
 
 
 def predict(
@@ -50,4 +51,5 @@ def predict(
         running=model.running,
         steps_left=model.steps_left,
         callbacks=model.callbacks,
+        overruns=model.overruns,
     )

@@ -13,7 +13,7 @@ from stepgen.plan.model import Plan
 from stepgen.verify.events import Events
 from stepgen.verify.simulators import SIMAVR, Simulator
 
-_MAILBOX = Struct("<BBBBIIIHHbBi")
+_MAILBOX = Struct("<BBBBIIIHHbBiH")
 _LOOP_OFFSET = 2
 _MARK_BEGIN, _MARK_END, _MARK_READY = 1, 2, 3
 _SETUP_CYCLES = 2_000_000
@@ -32,8 +32,9 @@ class Loop(IntEnum):
 
 class CallKind(IntEnum):
     """
-    Which function is called: of a motor or, from 13 on, of the library or avr-libc.
+    Which function is called: of a motor or, from 12 on, of the library, avr-libc or the sketch.
 
+    HOLD_UP keeps interrupts off for four cycles *top* times, 65535 at most, and a few more.
     DIVIDE_CLOCK sets CLKPR: the clock is divided by 2 to the power of *control*. The last two
     give their result as the position.
     """
@@ -45,6 +46,7 @@ class CallKind(IntEnum):
     INIT = 5
     UPDATE_CHECK = 6
     CALLBACKS = 7
+    HOLD_UP = 12
     DIVIDE_CLOCK = 13
     TOP_PER_SECOND = 14
     CLOCKS_PER_SECOND = 15
@@ -78,6 +80,7 @@ class Answer:
     result: int
     status: int
     position: int
+    missed: int = 0
 
 
 @dataclass
@@ -129,17 +132,17 @@ class Bench:
             StepgenError: The sketch did not get round to it, or did not return.
         """
         loop = self.machine.read_ram(self._mailbox + _LOOP_OFFSET, 1)[0]
-        message = _MAILBOX.pack(*_arguments(call, loop), 0, 0, 0)
+        message = _MAILBOX.pack(*_arguments(call, loop), 0, 0, 0, 0)
         self.machine.write_ram(self._mailbox, message)
         begin = self._run_to_mark(_MARK_BEGIN, call)
         self.machine.fine = True
         end = self._run_to_mark(_MARK_END, call)
         self.machine.fine = False
         self._run_until_free(call)
-        *_, result, status, position = _MAILBOX.unpack(
+        *_, result, status, position, missed = _MAILBOX.unpack(
             self.machine.read_ram(self._mailbox, _MAILBOX.size)
         )
-        answer = Answer(call, begin, end, result, status, position)
+        answer = Answer(call, begin, end, result, status, position, missed)
         self.answers.append(answer)
         return answer
 

@@ -26,6 +26,7 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     oracle = Oracle(subject, index, scene, runs)
     edges = oracle.predict(result)
     result.needs = oracle.needs
+    runs = oracle.served(runs)
     runs = within_tolerance(runs, edges, scene.tolerance_cycles)
     _compare_steps(subject, scene, runs, edges, result)
     _compare_calls(subject, scene, runs, edges, result)

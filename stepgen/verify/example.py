@@ -36,7 +36,7 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
         until = machine.cycle
         findings = []
         results = []
-        motors = subjects(loaded, plan)
+        motors = subjects(loaded, plan, elf)
         for index, subject in enumerate(motors):
             answers = _calls(trace, subject, index, plan)
             if not answers:

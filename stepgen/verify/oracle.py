@@ -3,26 +3,21 @@ The oracle: the reference model, fed with what happened on the chip.
 """
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from enum import IntEnum
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 from stepgen.plan.model import Plan
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sharing import Need
-from stepgen.reference.stimuli import (
-    Callbacks,
-    ClockOn,
-    Edge,
-    Hold,
-    Init,
-    MillisTick,
-    Release,
-    SetSpeed,
-    Stimulus,
-    UpdateCheck,
+from stepgen.reference.stimuli import Edge, MillisTick, Stimulus
+from stepgen.verify.bench import Answer
+from stepgen.verify.happenings import (
+    MissedRead,
+    PositionRead,
+    StatusRead,
+    Told,
+    happenings,
 )
-from stepgen.verify.bench import Answer, CallKind
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run, Trace
 
@@ -74,48 +69,6 @@ class Scene:
     tolerance_cycles: int = 0
 
 
-class _Order(IntEnum):
-    """
-    What comes first in one cycle: a call sees the new millis, a clock is set by the call.
-    """
-
-    MILLIS = 0
-    CALL = 1
-    CLOCK = 2
-
-
-@dataclass(frozen=True)
-class _Told:
-    """
-    The model is told of *stimulus*; *answer* is the call that it was, if it was one.
-    """
-
-    stimulus: Stimulus
-    answer: Answer | None = None
-
-
-@dataclass(frozen=True)
-class _StatusRead:
-    """
-    A call reads the status: in its first section with interrupts off.
-    """
-
-    answer: Answer
-
-
-@dataclass(frozen=True)
-class _PositionRead:
-    """
-    The same call reads the position: in its second section. Steps may come in between.
-    """
-
-    answer: Answer
-
-
-_Happening = _Told | _StatusRead | _PositionRead
-_Row = tuple[int, _Order, _Happening]
-
-
 class Oracle:
     """
     The model of motor number *index*, told and asked in the order of cycles.
@@ -130,21 +83,27 @@ class Oracle:
         self._model = MotorModel(subject.facts, self._service_cycle)
         self._edges: list[Edge] = []
         self._millis = 0
+        self._own: set[int] = set()
+        self._later: dict[int, int] = {}
 
     def predict(self, result: Comparison) -> list[Edge]:
         """
         Return all edges of the model; report each code, status or position that differs.
         """
-        for cycle, _, happening in sorted(self._rows(), key=lambda row: row[:2]):
+        scene = self._scene
+        rows = happenings(self._subject, self._index, scene.trace, scene.answers, scene.plan.board)
+        for cycle, _, happening in sorted(rows, key=lambda row: row[:2]):
             if cycle > self._scene.until_cycle:
                 break
             match happening:
-                case _Told(stimulus, answer):
+                case Told(stimulus, answer):
                     self._tell(stimulus, answer, result)
-                case _StatusRead(answer):
+                case StatusRead(answer):
                     self._compare_status(cycle, answer, result)
-                case _PositionRead(answer):
+                case PositionRead(answer):
                     self._compare_position(cycle, answer, result)
+                case MissedRead(answer):
+                    self._compare_missed(cycle, answer, result)
         self._advance(self._scene.until_cycle)
         return self._edges
 
@@ -155,13 +114,36 @@ class Oracle:
         """
         return self._model.needs
 
+    def served(self, runs: Sequence[Run]) -> list[Run]:
+        """
+        Return *runs*, those that served a later deadline in place of their own as if raised at it.
+        """
+        later = self._later
+        return [
+            replace(run, raised=later[run.raised], serves_later=True)
+            if run.raised in later
+            else run
+            for run in runs
+        ]
+
     def _service_cycle(self, deadline: int) -> int:
         tolerance = self._scene.tolerance_cycles
         place = bisect_left(self._raised, deadline - tolerance)
         if place < len(self._runs) and self._raised[place] <= deadline + tolerance:
+            self._own.add(self._raised[place])
             return self._runs[place].entered
+        if place and self._serves_later(self._runs[place - 1], deadline):
+            before = self._runs[place - 1]
+            self._later[before.raised] = deadline
+            return max(deadline, before.entered)
         # Nobody served it. A call that masks the interrupts before it could be served comes first.
         return self._scene.trace.served_from(deadline)
+
+    def _serves_later(self, run: Run, deadline: int) -> bool:
+        """
+        Tell whether *run*, raised for something that is no deadline, made the step of *deadline*.
+        """
+        return run.raised not in self._own and any(write.cycle > deadline for write in run.writes)
 
     def _advance(self, cycle: int) -> None:
         self._edges.extend(self._model.advance(cycle))
@@ -186,52 +168,8 @@ class Oracle:
         if answer.position != position:
             result.report(f"position {answer.position} at cycle {cycle}, the model says {position}")
 
-    def _rows(self) -> Iterator[_Row]:
-        """
-        Yield everything that happened to the motor, each with its cycle, in no order.
-        """
-        trace, subject = self._scene.trace, self._subject
-        for answer in self._scene.answers:
-            if answer.call.motor == self._index:
-                yield from _rows_of_call(answer, trace)
-        for start in trace.clock_starts(subject.timer):
-            clock_on = ClockOn(start.cycle, start.prescaler, start.tcnt)
-            yield start.cycle, _Order.CLOCK, _Told(clock_on)
-        board = self._scene.plan.board
-        vector = board.mcu.vector("TIMER0_OVF_vect").number
-        for cycle, millis in trace.millis_ticks(vector, board.f_cpu_hz):
-            yield cycle, _Order.MILLIS, _Told(MillisTick(cycle, millis))
-
-
-def _rows_of_call(answer: Answer, trace: Trace) -> Iterator[_Row]:
-    """
-    Yield what the call of *answer* does, at the cycles where it switches the interrupts off.
-    """
-    first = trace.commit(answer.begin_cycle, answer.end_cycle)
-    if first is None:
-        return
-    cycle = first[0]
-    stimulus = _stimulus(answer, cycle)
-    if stimulus is not None:
-        yield cycle, _Order.CALL, _Told(stimulus, answer)
-        return
-    second = trace.commit(answer.begin_cycle, answer.end_cycle, 1) or first
-    yield cycle, _Order.CALL, _StatusRead(answer)
-    yield second[0], _Order.CALL, _PositionRead(answer)
-
-
-def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:
-    """
-    Return what the model is told of the call of *answer*; nothing of one that only reads.
-    """
-    call = answer.call
-    update = (call.modification, call.interval, call.count)
-    stimuli: dict[CallKind, Stimulus] = {
-        CallKind.SET_SPEED: SetSpeed(cycle, call.control, call.top, call.limit, *update),
-        CallKind.HOLD: Hold(cycle),
-        CallKind.RELEASE: Release(cycle),
-        CallKind.INIT: Init(cycle),
-        CallKind.UPDATE_CHECK: UpdateCheck(cycle),
-        CallKind.CALLBACKS: Callbacks(cycle, bool(call.control & 1), bool(call.control & 2)),
-    }
-    return stimuli.get(call.kind)
+    def _compare_missed(self, cycle: int, answer: Answer, result: Comparison) -> None:
+        self._advance(cycle)
+        overruns = self._model.overruns
+        if answer.missed != overruns:
+            result.report(f"{answer.missed} missed at cycle {cycle}, the model says {overruns}")

@@ -21,7 +21,7 @@ from stepgen.verify.trace import ClockStart, Run
 _CALIBRATION_CYCLES = 8
 # Status, then position; one callback, then the other.
 _MASKED_SECTIONS = {CallKind.READ: 2, CallKind.CALLBACKS: 2}
-_NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS}
+_NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS, CallKind.HOLD_UP}
 
 
 def broken_rules(
@@ -31,7 +31,7 @@ def broken_rules(
     Yield each rule that motor number *index* broke, in words.
     """
     answers = [answer for answer in scene.answers if answer.call.motor == index]
-    yield from _unmasked_calls(scene, answers)
+    yield from _unmasked_calls(subject, scene, answers)
     steps = [edge for edge in edges if edge.kind is EdgeKind.STEP]
     calls = [answer for answer in answers if answer.call.kind not in _NO_CODE]
     starts = scene.trace.clock_starts(subject.timer)
@@ -40,12 +40,14 @@ def broken_rules(
     yield from _late_edges(scene.plan.motors[index], runs, calls, steps)
 
 
-def _unmasked_calls(scene: Scene, answers: Sequence[Answer]) -> Iterator[str]:
+def _unmasked_calls(subject: Subject, scene: Scene, answers: Sequence[Answer]) -> Iterator[str]:
     """
     Whatever is shared with the interrupt is read and written with interrupts off.
     """
     for answer in answers:
         sections = _MASKED_SECTIONS.get(answer.call.kind, 1)
+        if answer.call.kind is CallKind.READ and subject.facts.overrun_cycles is not None:
+            sections += 1  # the missed steps
         if scene.trace.commit(answer.begin_cycle, answer.end_cycle, sections - 1) is None:
             yield f"{answer.call} touches what the interrupt changes without masking it"
 
@@ -70,7 +72,7 @@ def _wrong_changes(
         if not is_first_of_call or run is None:
             continue
         old, new = _running_prescaler(starts, run.entered), _setting(subject, calls, first)
-        late = run.entered - run.raised
+        late = max(0, run.entered - run.raised)
         allowed = max(old, new.prescaler) + late + _CALIBRATION_CYCLES
         error = second.deadline_cycle - first.deadline_cycle - new.period_cycles
         if abs(error) > allowed:
@@ -125,7 +127,7 @@ def _late_edges(
     Within the interrupt the wires change at the cycle that the plan states.
 
     Before a boundary a few cycles later, and later still where the handler looks at the clock
-    before it steps; that way only its own bound limits.
+    before it steps; that way only its own bound limits. One that came too late may take longer.
     """
     by_deadline = {run.raised: run for run in runs}
     path = motor.hot_path
@@ -138,6 +140,10 @@ def _late_edges(
             call.control & Control.ENDPOINT_MILLIS and call.limit
         )
         latest = motor.isr_bound_cycles if thinks else path.boundary_edge_cycles + WAKE_CYCLES
+        overrun = (
+            path.overrun_cycles is not None and run.entered - run.raised >= path.overrun_cycles
+        )
+        latest += motor.gate.late_cycles if overrun or run.serves_later else 0
         taken = run.writes[-1].cycle - run.entered
         if taken > latest:
             yield f"the step due at cycle {run.raised} took {taken} cycles; {latest} are planned"

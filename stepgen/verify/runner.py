@@ -7,7 +7,7 @@ from pathlib import Path
 
 from stepgen.plan.model import Plan
 from stepgen.spec import LoadedSpec
-from stepgen.verify.bench import Answer, Bench, Call, Loop
+from stepgen.verify.bench import Answer, Bench, Call, CallKind, Loop
 from stepgen.verify.compare import Comparison, Scene, compare
 from stepgen.verify.scenarios import Scenario
 from stepgen.verify.shared_pins import compare_shared
@@ -76,7 +76,7 @@ def run_scenario(
         answers = tuple(bench.answers)
         cycle, tolerance = bench.machine.cycle, simulator.tolerance_cycles
         scene = Scene(trace, answers, plan, cycle, tolerance)
-        motors = subjects(loaded, plan)
+        motors = subjects(loaded, plan, elf)
         comparisons = tuple(compare(motor, i, scene) for i, motor in enumerate(motors))
         return Outcome(
             scenario=scenario,
@@ -99,6 +99,8 @@ def is_asleep(scenario: Scenario) -> bool:
 def _longest_mask(trace: Trace, answers: tuple[Answer, ...]) -> int:
     longest = 0
     for answer in answers:
+        if answer.call.kind is CallKind.HOLD_UP:
+            continue
         which = 0
         while section := trace.commit(answer.begin_cycle, answer.end_cycle, which):
             longest = max(longest, section[1] - section[0])

@@ -6,7 +6,8 @@ The oracle must not share the planner's tables: wires and phases are read here o
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Literal
 
 from stepgen.devices import Board, PortBit, Timer
@@ -15,7 +16,10 @@ from stepgen.reference.contract import MotionKind, TimingKind
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.sequences import coils_off, phases
 from stepgen.spec import LoadedSpec, Motor
+from stepgen.verify.elf import read_firmware
 
+_VECTOR_BYTES = 4
+_RJMP = 0xC000
 # PWM A and B, then DIR A and B: of the shield, and of one stacked upon another.
 _SHIELD_ENABLES = ("D3", "D11")
 _SHIELD_DIRECTIONS = {False: ("D12", "D13"), True: ("D9", "D8")}
@@ -65,22 +69,30 @@ class Subject:
         return tuple(bool(ports[bit.port] >> bit.bit & 1) for bit in self.wires)
 
 
-def subjects(loaded: LoadedSpec, plan: Plan) -> tuple[Subject, ...]:
+def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:
     """
-    Return the motors of *loaded*; the planner's choice of timer and range comes from *plan*.
+    Return the motors of *loaded*, as the program *elf* drives them.
+
+    The planner's choices come from *plan*: timer, range, from which lateness on a step is missed.
     """
     wires = {name: _wires(motor.drive, plan.board) for name, motor in loaded.spec.motors.items()}
     users = Counter(bit for bits in wires.values() for bit in bits)
+    image = read_firmware(elf).image
     found = []
     for name, planned in zip(loaded.spec.motors, plan.motors, strict=True):
         motor = loaded.spec.motors[name]
+        vector = plan.board.mcu.vector(planned.timing.vector).number
+        overrun = planned.hot_path.overrun_cycles
         shared = tuple(bit for bit in wires[name] if users[bit] > 1)
         found.append(
             Subject(
                 name=name,
-                facts=_facts(motor, plan, shares_enables=bool(shared)),
+                facts=replace(
+                    _facts(motor, plan, shares_enables=bool(shared)),
+                    overrun_cycles=overrun and overrun + _jump_saved_cycles(image, vector),
+                ),
                 wires=wires[name],
-                vector=plan.board.mcu.vector(planned.timing.vector).number,
+                vector=vector,
                 timer=planned.timing.timer,
                 is_shield=motor.drive.kind == "motor-shield",
                 shared=shared,
@@ -94,6 +106,16 @@ def _masks(bits: Iterable[PortBit]) -> dict[str, int]:
     for bit in bits:
         masks[bit.port] = masks.get(bit.port, 0) | 1 << bit.bit
     return masks
+
+
+def _jump_saved_cycles(image: bytes, vector: int) -> int:
+    """
+    Return the cycle less that the jump at *vector* takes if the linker made an RJMP of the JMP.
+
+    The interrupt then reads the counter that much earlier.
+    """
+    opcode = int.from_bytes(image[vector * _VECTOR_BYTES :][:2], "little")
+    return int(opcode & 0xF000 == _RJMP)
 
 
 def _facts(motor: Motor, plan: Plan, *, shares_enables: bool) -> MotorFacts:

@@ -36,6 +36,7 @@ class Run:
         entered: Cycle at which the response began.
         left: Cycle after RETI.
         writes: What it wrote to the ports, in order.
+        serves_later: Whether *raised* is that of a later deadline, served in place of its own.
     """
 
     raised: int
@@ -43,6 +44,7 @@ class Run:
     entered: int
     left: int
     writes: tuple[PortState, ...]
+    serves_later: bool = False
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from stepgen.verify.bounds.judge import judge_worst_case
 from stepgen.verify.conformance.needs import refuse
 from stepgen.verify.example import run_example
 from stepgen.verify.firmware import build_firmware
+from stepgen.verify.late_scenarios import late_scenarios
 from stepgen.verify.report import MotorFigures, SpecReport
 from stepgen.verify.runner import Outcome, is_asleep, run_scenario
 from stepgen.verify.scenarios import Scenario, standard_scenarios
@@ -78,7 +79,8 @@ def _scenarios(plan: Plan, simulator: Simulator) -> tuple[Scenario, ...]:
     Return the scenarios of *plan* that are not too long for *simulator*.
     """
     longest = simulator.longest_scenario_cycles
-    every = (*standard_scenarios(plan), *update_scenarios(plan), *sharing_scenarios(plan))
+    kinds = (standard_scenarios, update_scenarios, sharing_scenarios, late_scenarios)
+    every = [scenario for kind in kinds for scenario in kind(plan)]
     return tuple(one for one in every if longest is None or one.cycles <= longest)
 
 

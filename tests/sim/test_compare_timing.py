@@ -54,7 +54,7 @@ RUN_CYCLES = 12_000_000
 # Each held-up interrupt also waits for that of millis, 110 cycles, and for what begins one
 # instruction before interrupts go off; a sketch that blocks for 1100 passes the limit of 970.
 ALLOWED = [(840, 0), (640, 1)]
-TOO_LONG = 1_100
+FAR_TOO_LONG = 2_400
 
 
 @dataclass(frozen=True)
@@ -114,15 +114,31 @@ def test_no_step_is_lost_or_late_by_more_than_it_waited(
     assert blocked <= waited <= 970
 
 
-def test_interrupts_that_are_off_for_too_long_do_harm(tmp_path: Path) -> None:
+@pytest.mark.parametrize("top", [2_048, 2_055, 4_088, 20_011])
+@pytest.mark.parametrize("blocked", [1_100, 1_500, 1_800])
+def test_a_step_that_waits_too_long_delays_no_other(tmp_path: Path, top: int, blocked: int) -> None:
     """
-    The limit is real: beyond it a match is missed and comes a lap later, and so does all else.
+    However often interrupts are off for too long: as many steps as are due, most of them in time.
     """
-    steps = _steps(_run(tmp_path, 2_048, TOO_LONG, 0))
+    beside = _run(tmp_path, top, blocked, 0)
+    period = top // 8 * 8
+    made = [run for run in beside.runs if run.writes]
+    due = [beside.first_step_cycle + k * period for k in range(len(made))]
+    late = [run.writes[-1].cycle - cycle for run, cycle in zip(made, due, strict=True)]
+
+    assert len(made) > (RUN_CYCLES - beside.first_step_cycle) // period - 2
+    assert min(late) > 0
+    assert max(late[1:]) < blocked + 300  # that of millis, and the way to the wires
+
+
+def test_interrupts_that_are_off_for_far_too_long_do_harm(tmp_path: Path) -> None:
+    """
+    The limit is real: beyond 1900 cycles a match can be lost, and all steps come a lap late.
+    """
+    steps = _steps(_run(tmp_path, 2_048, FAR_TOO_LONG, 0))
     late = [after - before - 2_048 for before, after in pairwise(steps)]
 
     assert max(late) >= 2_048
-    assert all(cycles % 2_048 == 0 for cycles in late)
 
 
 def test_laps_take_as_many_cycles_as_stated() -> None:
@@ -142,5 +158,5 @@ def test_laps_take_as_many_cycles_as_stated() -> None:
 
     assert {length for length, is_step in lengths if not is_step} == set(motor.hot_path.lap_cycles)
     assert set(usual_steps) == {motor.hot_path.usual_cycles}
-    # In 40 000 cycles 18 laps of 25, a last one of 50 and a step of 85, each 255th 162 longer.
+    # In 40 000 cycles 18 laps of 25, a last one of 55 and a step of 90, each 255th 162 longer.
     assert sum(length for length, _ in lengths) < 0.015 * 4_000_000

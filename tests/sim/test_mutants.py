@@ -3,13 +3,20 @@ Verification can fail: each planted bug of the templates is caught.
 """
 
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 
+from stepgen.devices import Mcu, Timer8
 from stepgen.library.render import template_dir
+from stepgen.plan.instructions import Gate, Storage
+from stepgen.plan.planner import make_plan
+from stepgen.plan.timings import compare
 from stepgen.spec import load_spec
+from stepgen.verify.firmware import build_firmware
+from stepgen.verify.late_scenarios import late_scenarios
+from stepgen.verify.runner import run_scenario
 from stepgen.verify.toolchain import default_compiler
 from stepgen.verify.verification import verify_spec
 
@@ -188,7 +195,31 @@ MUTANTS = (
         "",
         spec="uno_servo_beside",
     ),
+    Mutant(
+        "a count of missed steps that an init leaves",
+        "timings/compare.j2",
+        "motion.missed = 0;",
+        "",
+        spec="uno_servo_beside",
+    ),
+    Mutant(
+        "a count of missed steps that is read without cli",
+        "timings/compare.j2",
+        "  const Masked masked;\n  return {{ motor.name }}Motion.missed;",
+        "  return {{ motor.name }}Motion.missed;",
+        spec="uno_servo_beside",
+    ),
 )
+# Bugs of the way to the step in timing compare: an instruction, and what stands in its place.
+GATE_MUTANTS = {
+    "a missed lap that is waited for": ("brsh  9b", "nop"),
+    "a missed step that is waited for": ("brsh  8f", "nop"),
+    "an overrun that is not counted": ("sts   %[missed], r25", "nop"),
+    "an overrun that the status does not tell": ("ori   r25, %[statMissed]", "nop"),
+    "a count of overruns without its upper byte": ("sts   %[missed] + 1, r25", "nop"),
+    "a match that is served by hand and comes all the same": ("out   %[tifr], r24", "nop"),
+    "a last lap that has passed, and the step comes as another": ("ldi   r24, 255", "ldi   r24, 0"),
+}
 
 
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
@@ -208,3 +239,27 @@ def test_a_planted_bug_is_caught(mutant: Mutant, tmp_path: Path) -> None:
 
     failed = [check.name for check in report.checks if not check.passed]
     assert failed, f"{mutant.name} was not noticed"
+
+
+@pytest.mark.parametrize("name", GATE_MUTANTS)
+def test_a_planted_bug_of_late_steps_is_caught(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """
+    The interrupt does the wrong thing only where it comes too late, and verification sees that.
+    """
+    old, new = GATE_MUTANTS[name]
+    right = compare.gate
+
+    def wrong(timer: Timer8, storage: Storage, mcu: Mcu) -> Gate:
+        made = right(timer, storage, mcu)
+        lines = [replace(one, text=new) if one.text == old else one for one in made.instructions]
+        assert tuple(lines) != made.instructions
+        return replace(made, instructions=tuple(lines))
+
+    monkeypatch.setattr(compare, "gate", wrong)
+    loaded = load_spec(SPECS / "uno_servo_beside.yaml")
+    plan = make_plan(loaded)
+    bench = build_firmware(plan, loaded.document.text, default_compiler()).bench
+
+    outcomes = [run_scenario(loaded, plan, bench, one) for one in late_scenarios(plan)]
+
+    assert any(outcome.findings for outcome in outcomes), f"{name} was not noticed"

@@ -107,6 +107,7 @@ struct CompareConstantMotion {
   uint16_t lapsHigh;  // and so many times 256 more
   Interval next;  // how long the interval after the next step will be
   Interval now;  // what is left of the present one
+  uint16_t missed;  // steps that came too late
 };
 
 // What is kept of a motion at constant speed.
@@ -219,11 +220,11 @@ INLINE void leftRunTimer() {
   TIMSK2 = _BV(OCIE2A);
 }
 
-// Timer 2 compare match A: one step, 85 cycles from the interrupt's response to RETI; at most 227
-// when it goes on in __vector_left_boundary. The wires change 73 cycles after the match (78 before
-// a boundary). Between two steps it counts laps of the timer, 25 cycles each, and 50 for the last
-// of them. It writes port B and D and nothing else that the sketch can see. Behind each instruction
-// stand its cycles.
+// Timer 2 compare match A: one step, 90 cycles from the interrupt's response to RETI; at most 308
+// when it comes too late and goes on in __vector_left_boundary. The wires change 78 cycles after
+// the match (83 before a boundary). Between two steps it counts laps of the timer, 25 cycles each,
+// and 55 for the last of them. It writes port B and D and nothing else that the sketch can see.
+// Behind each instruction stand its cycles.
 ISR(TIMER2_COMPA_vect, ISR_NAKED) {
   asm volatile(
       "   push  r24                      \n"  // 2
@@ -247,23 +248,83 @@ ISR(TIMER2_COMPA_vect, ISR_NAKED) {
       "   sts   %[laps], r24             \n"  // 2  the next match is the step
       "   push  r25                      \n"  // 2
       "   lds   r24, %[ocr]              \n"  // 2
+      "   lds   r25, %[tcnt]             \n"  // 2
+      "   sub   r25, r24                 \n"  // 1  ticks since the match: one more,
+      "   cpi   r25, 127                 \n"  // 1  and the next could be missed
+      "   brsh  8f                       \n"  // 1
       "   lds   r25, %[last]             \n"  // 2  ticks from the last lap to the step
       "   add   r24, r25                 \n"  // 1
       "   sts   %[ocr], r24              \n"  // 2
       "   pop   r25                      \n"  // 2
       "   rjmp  5b                       \n"  // 2
+      "8: lds   r25, %[last]             \n"  // 2  the last lap is late:
+      "   add   r24, r25                 \n"  // 1
+      "   sts   %[ocr], r24              \n"  // 2
+      "   sub   r24, r25                 \n"  // 1
+      "   lds   r25, %[tcnt]             \n"  // 2
+      "   sub   r25, r24                 \n"  // 1
+      "   lds   r24, %[last]             \n"  // 2  is the counter past the step?
+      "   dec   r24                      \n"  // 1  0 stands for 256
+      "   dec   r25                      \n"  // 1
+      "   cp    r24, r25                 \n"  // 1
+      "   pop   r25                      \n"  // 2
+      "   brsh  5b                       \n"  // 1  no: it will come
+      "   ldi   r24, %[match]            \n"  // 1
+      "   out   %[tifr], r24             \n"  // 1  served here, once
+      "   rjmp  7f                       \n"  // 2
+      "9: lds   r25, %[first]            \n"  // 2  the step is too late:
+      "   add   r24, r25                 \n"  // 1
+      "   sts   %[ocr], r24              \n"  // 2
+      "   sub   r24, r25                 \n"  // 1
+      "   lds   r25, %[missed]           \n"  // 2  count it
+      "   subi  r25, 0xff                \n"  // 1
+      "   sts   %[missed], r25           \n"  // 2
+      "   lds   r25, %[missed] + 1       \n"  // 2
+      "   sbci  r25, 0xff                \n"  // 1
+      "   sts   %[missed] + 1, r25       \n"  // 2
+      "   lds   r25, %[status]           \n"  // 2  and tell
+      "   ori   r25, %[statMissed]       \n"  // 1
+      "   sts   %[status], r25           \n"  // 2
+      "   lds   r25, %[tcnt]             \n"  // 2
+      "   sub   r25, r24                 \n"  // 1
+      "   lds   r24, %[first]            \n"  // 2  is the counter past the first lap?
+      "   cp    r24, r25                 \n"  // 1
+      "   brsh  10f                      \n"  // 1  no: it will come
+      "   ldi   r24, %[match]            \n"  // 1
+      "   out   %[tifr], r24             \n"  // 1  served here, once
+      "   lds   r24, %[nextLast]         \n"  // 2  the interval that begins now, a lap less
+      "   sts   %[last], r24             \n"  // 2
+      "   lds   r24, %[nextLaps]         \n"  // 2
+      "   dec   r24                      \n"  // 1
+      "   sts   %[laps], r24             \n"  // 2
+      "   lds   r24, %[nextLapsHigh]     \n"  // 2
+      "   brne  11f                      \n"  // 1
+      "   dec   r24                      \n"  // 1
+      "   brpl  11f                      \n"  // 1
+      "   lds   r24, %[ocr]              \n"  // 2  it was the last:
+      "   lds   r25, %[last]             \n"  // 2  from there to the step
+      "   add   r24, r25                 \n"  // 1
+      "   sts   %[ocr], r24              \n"  // 2
+      "   ldi   r24, 1                   \n"  // 1
+      "   sts   %[laps], r24             \n"  // 2
+      "   ldi   r24, 255                 \n"  // 1
+      "   rjmp  11f                      \n"  // 2
       "7: push  r25                      \n"  // 2
       "   lds   r24, %[ocr]              \n"  // 2
+      "   lds   r25, %[tcnt]             \n"  // 2
+      "   sub   r25, r24                 \n"  // 1  ticks since the match: one more,
+      "   cpi   r25, 127                 \n"  // 1  and the next could be missed
+      "   brsh  9b                       \n"  // 1
       "   lds   r25, %[first]            \n"  // 2  ticks from this step to the first lap
       "   add   r24, r25                 \n"  // 1
       "   sts   %[ocr], r24              \n"  // 2
-      "   pop   r25                      \n"  // 2
-      "   lds   r24, %[nextLast]         \n"  // 2  the interval that begins now
+      "10: lds   r24, %[nextLast]        \n"  // 2  the interval that begins now
       "   sts   %[last], r24             \n"  // 2
       "   lds   r24, %[nextLaps]         \n"  // 2
       "   sts   %[laps], r24             \n"  // 2
       "   lds   r24, %[nextLapsHigh]     \n"  // 2
-      "   sts   %[lapsHigh], r24         \n"  // 2
+      "11: sts   %[lapsHigh], r24        \n"  // 2
+      "   pop   r25                      \n"  // 2
       "   in    r24, %[count]            \n"  // 1
       "   dec   r24                      \n"  // 1  one step less until the next boundary
       "   out   %[count], r24            \n"  // 1
@@ -319,6 +380,8 @@ ISR(TIMER2_COMPA_vect, ISR_NAKED) {
         [mode] "i"(&leftMotion.mode),
         [think] "I"(0),
         [ocr] "n"(_SFR_MEM_ADDR(OCR2A)),
+        [tcnt] "n"(_SFR_MEM_ADDR(TCNT2)),
+        [tifr] "I"(_SFR_IO_ADDR(TIFR2)),
         [laps] "i"(&leftMotion.now.laps),
         [lapsHigh] "i"(&leftMotion.now.lapsHigh),
         [last] "i"(&leftMotion.now.last),
@@ -326,6 +389,10 @@ ISR(TIMER2_COMPA_vect, ISR_NAKED) {
         [nextLaps] "i"(&leftMotion.next.laps),
         [nextLapsHigh] "i"(&leftMotion.next.lapsHigh),
         [nextLast] "i"(&leftMotion.next.last),
+        [missed] "i"(&leftMotion.missed),
+        [status] "i"(&leftMotion.status),
+        [match] "n"(_BV(OCF2A)),
+        [statMissed] "n"(MOTOR_STAT_MISSED),
         [ring] "i"(leftRing),
         [port0] "I"(_SFR_IO_ADDR(PORTB))
       : "memory");
@@ -415,6 +482,7 @@ void leftShieldInit() {
   motion.rest = 0;
   motion.target = 0;
   motion.restHigh = 0;
+  motion.missed = 0;
   GPIOR1 = 0;
   GPIOR0 = 0;  // phase 0, going forward
   PORTB &= 0xC4;  // DIR A, DIR B, PWM B, BRAKE A, BRAKE B
@@ -518,6 +586,11 @@ SHARED int8_t leftSetCoils(bool on) {
 int8_t leftHold() { return leftSetCoils(true); }
 
 int8_t leftRelease() { return leftSetCoils(false); }
+
+uint16_t leftReadMissed() {
+  const Masked masked;
+  return leftMotion.missed;
+}
 
 // ---- right: four switches (ULN2003 and the like), full steps, timer 1 ----
 

@@ -40,6 +40,7 @@ constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // something was refused; 
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;  // because a speed is out of range
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;          // at the end point, or stopped
 constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;       // running at a speed that stays
+constexpr uint8_t MOTOR_STAT_MISSED = 0x80;           // a step came too late: see ReadMissed
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed, above 0 a warning.
 constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // below MOTOR_MIN_TOP
@@ -73,8 +74,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // or inside ATOMIC_BLOCK.
 // Timer 2 belongs to the motor: no analogWrite() on D11 or D3. There can be no tone(), which needs
 // timer 2 too. Its interrupt may be held up for 970 clocks in all, by calls of the library, other
-// interrupts and stretches with interrupts off; after a longer one a step and all that follow it
-// come 2048 clocks late.
+// interrupts and stretches with interrupts off. A step that waits longer is made late and counted,
+// MOTOR_STAT_MISSED is set, and the next one is on time again; but after more than 1900 clocks a
+// step and all that follow it can come 2048 clocks late, and nothing tells.
 
 // Steps for whole turns: 200 in each.
 constexpr uint32_t leftStepsForTurns(uint16_t turns) {
@@ -102,6 +104,11 @@ int8_t leftSetSpeed(
 // How it goes: MOTOR_STAT_... bits. A limit in milliseconds shows MOTOR_STAT_REACHED as soon as it
 // has passed; the motor counts as running until the step that is not made would be due.
 uint8_t leftReadStatus();
+
+// How many steps came more than 970 clocks late since leftShieldInit(), because their
+// interrupt was held up. None of them is lost, and those after them come on time. The coils going
+// off at the end of a move counts as a step. It wraps at 16 bits.
+uint16_t leftReadMissed();
 
 // Where the motor is: 0 after leftShieldInit(), +1 for each step,
 // -1 for each with MOTOR_CTRL_DIRECTION. It wraps at 32 bits.

@@ -5,12 +5,17 @@ Compare: registers and bits of the timer that runs through.
 from dataclasses import dataclass
 
 from stepgen.plan.model import MotorPlan
+from stepgen.plan.timings.compare import LONGEST_WAIT_CYCLES
 
 
 @dataclass(frozen=True)
 class CompareView:
     """
-    Names of a timer's registers and bits; *clock* selects the prescaler of 8.
+    Names of a timer's registers and bits.
+
+    Args:
+        clock: Selects the prescaler of 8.
+        longest_wait: How many clocks its interrupt may wait without harm.
     """
 
     number: int
@@ -24,6 +29,7 @@ class CompareView:
     ocf: str
     ocie: str
     clock: str
+    longest_wait: int
 
 
 def view(motor: MotorPlan) -> CompareView:
@@ -44,4 +50,5 @@ def view(motor: MotorPlan) -> CompareView:
         ocf=f"OCF{n}A",
         ocie=f"OCIE{n}A",
         clock=f"CS{n}1",
+        longest_wait=LONGEST_WAIT_CYCLES,
     )

@@ -8,15 +8,23 @@ then each compare match is one lap; after the last of them OCR2A goes on by *las
 So each move leaves 128 ticks until the next match, and the interrupt that makes it may come
 almost as late without missing it.
 
+An interrupt that comes later sees how late by the counter: TCNT2 less where OCR2A still is. Where
+the counter has passed the next match, that one will come a lap late, and is served at once in its
+place: a lap by counting one less, a step by making it. So no deadline moves. That holds as long
+as the counter is not round, since 8 bits tell no more: each flag of the timer is set within a lap
+of the interrupt before, so none of them tells a second lap from the first.
+
 Source: ATmega328P datasheet, "8-bit Timer/Counter2 with PWM and Asynchronous Operation", Normal
 Mode and Output Compare Unit.
 """
 
-from stepgen.devices import Board, Mcu, Timer8
+from stepgen.devices import Board
+from stepgen.plan.compare_gate import gate
 from stepgen.plan.faults import Faults
-from stepgen.plan.instructions import Gate, Instruction, Storage
 from stepgen.plan.model import TimerPlan
 from stepgen.spec.timings.compare import Compare
+
+__all__ = ["gate", "offer", "plan", "shortest_period_cycles", "way_out"]
 
 PRESCALER = 8
 LAP_CYCLES = 256 * PRESCALER
@@ -24,6 +32,9 @@ NEAREST_MATCH_CYCLES = 128 * PRESCALER
 _MOVE_CYCLES = 46  # from the response until OCR2A is written, at most, with a little to spare
 LONGEST_WAIT_CYCLES = NEAREST_MATCH_CYCLES - PRESCALER - _MOVE_CYCLES
 """How long an interrupt may be held up: 970 cycles."""
+_LONGEST_RESCUE_CYCLES = 148  # from the response until OCR2A is right again, with some to spare
+LONGEST_OVERRUN_CYCLES = LAP_CYCLES - _LONGEST_RESCUE_CYCLES
+"""How long it may be held up for its overrun to be seen and served: 1900 cycles."""
 
 SMALLEST_PERIOD_CYCLES = LAP_CYCLES
 LARGEST_PERIOD_CYCLES = 65_535 * 1024  # that of fast PWM, so that a sketch can change over
@@ -54,8 +65,10 @@ def plan(spec: Compare, board: Board, free: tuple[int, ...], faults: Faults) -> 
         rule=(
             f"There can be no tone(), which needs timer {timer.number} too. Its interrupt may be "
             f"held up for {LONGEST_WAIT_CYCLES} clocks in all, by calls of the library, other "
-            "interrupts and stretches with interrupts off; after a longer one a step and all that "
-            f"follow it come {LAP_CYCLES} clocks late."
+            "interrupts and stretches with interrupts off. A step that waits longer is made late "
+            "and counted, MOTOR_STAT_MISSED is set, and the next one is on time again; but after "
+            f"more than {LONGEST_OVERRUN_CYCLES} clocks a step and all that follow it can come "
+            f"{LAP_CYCLES} clocks late, and nothing tells."
         ),
         is_set_anew=False,
     )
@@ -77,87 +90,6 @@ def way_out(board: Board, free: tuple[int, ...]) -> str:
     if numbers:
         return f"take `timing: fast-pwm` on timer {' or '.join(numbers)}"
     return "take a larger board, since no other timer is left on this one"
-
-
-def gate(timer: Timer8, storage: Storage, mcu: Mcu) -> Gate:
-    """
-    Return the count of laps, which each interrupt passes on its way to the step.
-    """
-    count = (
-        Instruction("lds   r24, %[laps]", 2, "one compare match less of this interval"),
-        Instruction("dec   r24", 1),
-        Instruction("sts   %[laps], r24", 2),
-        Instruction("breq  6f", 1),
-    )
-    leave = (
-        Instruction(
-            storage.scratch.load("r24", "scratch").text, 1, "a lap, and no step yet", label="5"
-        ),
-        Instruction("out   %[sreg], r24", 1),
-        Instruction("pop   r24", 2),
-        Instruction("reti", mcu.response_cycles),
-    )
-    high = (
-        Instruction("lds   r24, %[lapsHigh]", 2, "256 laps less,", label="6"),
-        Instruction("dec   r24", 1),
-        Instruction("sts   %[lapsHigh], r24", 2),
-        Instruction("brpl  5b", 1, "which are still to come; or"),
-        Instruction("sbrs  r24, 0", 1, "255: this is the last lap,"),
-        Instruction("rjmp  7f", 2, "254: the step after it"),
-    )
-    last = (
-        Instruction("ldi   r24, 1", 1),
-        Instruction("sts   %[laps], r24", 2, "the next match is the step"),
-        *_advance("last", "ticks from the last lap to the step"),
-        Instruction("rjmp  5b", 2),
-    )
-    step = (
-        *_advance("first", "ticks from this step to the first lap", label="7"),
-        *_copy("nextLast", "last", "the interval that begins now"),
-        *_copy("nextLaps", "laps"),
-        *_copy("nextLapsHigh", "lapsHigh"),
-    )
-    until_high = _cycles(count) + 1  # the branch is taken
-    return Gate(
-        instructions=(*count, *leave, *high, *last, *step),
-        step_cycles=until_high + _cycles(high) + _cycles(step),
-        lap_cycles=(
-            _cycles(count) + _cycles(leave),
-            until_high + _cycles(high) - 1 + _cycles(last) + _cycles(leave),
-        ),
-        registers=(("ocr", timer.ocra),),
-        fields=(
-            ("laps", "now.laps"),
-            ("lapsHigh", "now.lapsHigh"),
-            ("last", "now.last"),
-            ("first", "next.first"),
-            ("nextLaps", "next.laps"),
-            ("nextLapsHigh", "next.lapsHigh"),
-            ("nextLast", "next.last"),
-        ),
-    )
-
-
-def _advance(ticks: str, note: str, label: str = "") -> tuple[Instruction, ...]:
-    return (
-        Instruction("push  r25", 2, label=label),
-        Instruction("lds   r24, %[ocr]", 2),
-        Instruction(f"lds   r25, %[{ticks}]", 2, note),
-        Instruction("add   r24, r25", 1),
-        Instruction("sts   %[ocr], r24", 2),
-        Instruction("pop   r25", 2),
-    )
-
-
-def _copy(source: str, target: str, note: str = "") -> tuple[Instruction, ...]:
-    return (
-        Instruction(f"lds   r24, %[{source}]", 2, note),
-        Instruction(f"sts   %[{target}], r24", 2),
-    )
-
-
-def _cycles(instructions: tuple[Instruction, ...]) -> int:
-    return sum(instruction.cycles for instruction in instructions)
 
 
 def shortest_period_cycles(own: int, interrupts: int, masked: int) -> int | None:
