@@ -18,7 +18,7 @@ from stepgen.spec.base import SpecModel
 from stepgen.spec.drives import Drive
 from stepgen.spec.motions import Motion
 from stepgen.spec.timings import Timing
-from stepgen.spec.turns import Steps
+from stepgen.spec.turns import Ratio, Steps
 
 _LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
@@ -132,6 +132,7 @@ class Motor(SpecModel):
     at_rest: Literal["hold", "release"] = "release"
     port: Literal["shared", "owned"] = "shared"
     budget: Budget | None = None
+    max_steps_per_second: Ratio | None = None
 
 
 def _motor_name(name: str) -> str:
