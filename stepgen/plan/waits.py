@@ -42,7 +42,7 @@ SHORT_APART = 2
 LONG_APART = 32
 """How many lie between two long ones: each call that has one works out a timer setting first."""
 
-_MOST_RUNS = 1000  # a backlog that lasts longer counts as one that never ends
+_MOST_RUNS = 50  # a backlog that lasts longer counts as one that never ends
 
 
 @dataclass(frozen=True)

@@ -134,10 +134,10 @@ def test_a_line_that_is_busy_both_ways_loses_no_step(machine_with: MachineWith) 
 
 def test_a_rate_far_beyond_the_bound_fails_verification() -> None:
     """
-    A step each 200 clocks: one with a boundary, and the millis interrupt, take longer than that.
+    A step each 100 clocks: its longest interrupt is over 150, and that of millis over 100.
     """
     path = SPECS / "uno_motor_shield.yaml"
-    loaded, plan = api.load(path), replace(api.plan(path), minimum_period_cycles=200)
+    loaded, plan = api.load(path), replace(api.plan(path), minimum_period_cycles=100)
     firmware = build_firmware(plan, loaded.document.text, default_compiler())
     long_run = standard_scenarios(plan)[0]
 
