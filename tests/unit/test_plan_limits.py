@@ -88,17 +88,33 @@ def test_what_the_sketch_uses_takes_from_the_rate(planned: Planner) -> None:
     assert [text.split(":")[0] for text in limits[-1].unproven] == ["Servo"]
 
 
-def test_more_than_eight_servos_may_come_at_once(planned: Planner) -> None:
+def test_servos_of_a_higher_number_count_once_and_others_as_often_as_they_come(
+    planned: Planner,
+) -> None:
     """
-    Nine pulses of 2400 us are over 20 ms; eight are not, and keep 544 us between interrupts.
-    """
-    motor = "drive: motor-shield, timer: 3"
-    pins = " ".join(f"D{number}" for number in range(22, 31))
-    nine = one(planned, motor, f"Servo {pins}, Serial", "mega")
-    eight = one(planned, motor, f"Servo {pins[:-4]}, Serial", "mega")
+    Up to 12 servos have timer 5, behind a motor on timer 3; more have timer 1 too, before it.
 
-    # Servo's timer 5 has a higher number than timer 3: one of them is waited for, however many.
-    assert nine.rates["motor"] == eight.rates["motor"]
+    Nine pulses of 2400 us are over 20 ms, so that two interrupts of a timer can come at once.
+    """
+    pins = [f"D{number}" for number in range(22, 36)]
+    counts = {
+        number: [
+            part.cycles
+            for part in one(
+                planned,
+                "drive: motor-shield, timer: 3",
+                f"Servo {' '.join(pins[:number])}",
+                "mega",
+            )
+            .rates["motor"][-1]
+            .parts
+            if part.cause.startswith("Servo")
+        ]
+        for number in (8, 12, 13)
+    }
+
+    assert counts[8] == counts[12] == [540]
+    assert counts[13] == [540, 2 * 540]
 
 
 def test_motors_of_lower_number_go_first(planned: Planner) -> None:
