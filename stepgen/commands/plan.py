@@ -77,8 +77,12 @@ def _show_spec(spec: Path, *, as_json: bool) -> None:
     if as_json:
         say(json.dumps(plain(decided), indent=2, ensure_ascii=False))
         return
-    motors = [(f"Motor {motor.name}", (), _motor_rows(motor)) for motor in decided.motors]
-    print_tables([("Library", (), _library_rows(decided)), *motors])
+    motors = [
+        (f"Motor {motor.name}", (), (*_motor_rows(motor), *_rate_rows(decided, motor)))
+        for motor in decided.motors
+    ]
+    tables = [("Library", (), _library_rows(decided)), *motors]
+    print_tables([*tables, ("Interrupts off", _HELD_HEADING, _held_rows(decided))])
 
 
 def _library_rows(decided: Plan) -> Iterable[Row]:
@@ -89,6 +93,35 @@ def _library_rows(decided: Plan) -> Iterable[Row]:
     yield ("uses", ", ".join(decided.uses) or "no other library")
     yield ("shortest period", _period(decided.minimum_period_cycles, clock_hz))
     yield ("longest period", _period(decided.largest_period_cycles, clock_hz))
+
+
+def _rate_rows(decided: Plan, motor: MotorPlan) -> Iterable[Row]:
+    """
+    Yield the highest safe rates of *motor*, and what the last of them is made of.
+    """
+    limits = decided.rates[motor.name]
+    for limit in limits:
+        yield (f"safe {limit.beside}", _period(limit.period_cycles, decided.board.f_cpu_hz))
+    yield ("limited by", limits[-1].cause)
+    parts = (f"{part.cycles} {part.cause}" for part in limits[-1].parts if part.cycles)
+    yield from (("not proven", text) for text in limits[-1].unproven)
+    yield ("cycles of a step", "\n".join(parts))
+
+
+_HELD_HEADING = ("steps/s", "longest stretch of the sketch", "a step late by up to")
+
+
+def _held_rows(decided: Plan) -> Iterable[Row]:
+    for held in decided.held_off:
+        yield (
+            f"{held.steps_per_second:.6g}",
+            _duration(held.stretch_cycles, decided.board.f_cpu_hz),
+            _duration(held.late_cycles, decided.board.f_cpu_hz),
+        )
+
+
+def _duration(cycles: int, clock_hz: int) -> str:
+    return f"{cycles} cycles = {cycles * 1e6 / clock_hz:.6g} us"
 
 
 def _period(cycles: int, clock_hz: int) -> str:

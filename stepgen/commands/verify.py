@@ -93,6 +93,8 @@ def _say_report(report: "SpecReport", *, paths: bool) -> None:
             f"{motor.measured_max} of at most {motor.bound}, "
             f"up to {motor.max_steps_per_second:.0f} steps/s"
         )
+        for limit in motor.rates[-1:]:
+            say(f"    {limit.steps_per_second:.0f} steps/s are safe {limit.beside}: {limit.cause}")
         for part in motor.longest_path if paths else ():
             say(f"    {part}")
     stack = (

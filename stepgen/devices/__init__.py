@@ -3,6 +3,13 @@ What datasheets and boards say: chips, ports, timers, vectors, pins, and other l
 """
 
 from stepgen.devices.catalogue import boards, find_board
+from stepgen.devices.interrupts import (
+    INTERRUPTS,
+    MILLIS,
+    UNBOUND,
+    LibraryInterrupt,
+    UnboundInterrupt,
+)
 from stepgen.devices.libraries import (
     SKETCH_LIBRARIES,
     LibraryClaims,
@@ -23,9 +30,13 @@ from stepgen.devices.model import (
 )
 
 __all__ = [
+    "INTERRUPTS",
+    "MILLIS",
     "SKETCH_LIBRARIES",
+    "UNBOUND",
     "Board",
     "LibraryClaims",
+    "LibraryInterrupt",
     "Mcu",
     "Pin",
     "Port",
@@ -35,6 +46,7 @@ __all__ = [
     "Timer",
     "Timer8",
     "Timer16",
+    "UnboundInterrupt",
     "Vector",
     "boards",
     "find_board",

@@ -16,6 +16,7 @@ from stepgen.library.api_view import (
 from stepgen.library.hot_view import THINK_BIT
 from stepgen.library.motor_view import MotorView, Named, motor_view
 from stepgen.library.prose import paragraph, takes, title
+from stepgen.library.rates_view import HeldRow, held_rows, lateness, speeds
 from stepgen.library.sharing import needs_comment
 from stepgen.library.text import c_comment, frequency
 from stepgen.plan.model import Plan
@@ -70,6 +71,9 @@ class LibraryView:
     keywords: tuple[Named, ...]
     names: str
     takes: tuple[str, ...]
+    speeds: tuple[str, ...]
+    held_rows: tuple[HeldRow, ...]
+    lateness: str
 
 
 def make_view(plan: Plan, spec_hash: str) -> LibraryView:
@@ -114,6 +118,9 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         keywords=_keywords(plan),
         names=names,
         takes=takes(plan),
+        speeds=tuple(speeds(plan)),
+        held_rows=tuple(held_rows(plan)),
+        lateness=lateness(plan),
     )
 
 

@@ -2,6 +2,7 @@
 The plan: every number decided, nothing left for the templates to work out.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -59,6 +60,66 @@ class TimerPlan:
 
 
 @dataclass(frozen=True)
+class Cadence:
+    """
+    How often a timing's interrupt comes, and how long each may be kept waiting before it is lost.
+    """
+
+    spacing_cycles: int
+    patience_cycles: int
+
+
+@dataclass(frozen=True)
+class Part:
+    """
+    Something that an interrupt waits for, and for how long at most.
+    """
+
+    cause: str
+    cycles: int
+
+
+@dataclass(frozen=True)
+class RateLimit:
+    """
+    The highest rate at which a motor loses no step, while all motors run at theirs.
+
+    Args:
+        beside: What else there is: ``alone``, ``beside millis``, ``beside millis and Servo``.
+        period_cycles: The shortest time between two steps.
+        steps_per_second: The rate.
+        cause: What does not allow more, in words.
+        parts: What a step can wait for at that rate, and its own interrupt.
+        unproven: Whose interrupts have figures that no test proves, and where these come from.
+    """
+
+    beside: str
+    period_cycles: int
+    steps_per_second: float
+    cause: str
+    parts: tuple[Part, ...]
+    unproven: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class HeldOff:
+    """
+    How long the sketch may have interrupts off in one go, at one time between steps.
+
+    Args:
+        period_cycles: The time between two steps of every motor.
+        steps_per_second: Their rate.
+        stretch_cycles: The longest stretch with which no step is lost.
+        late_cycles: How late a step then begins at most: the stretch, and what else it waits for.
+    """
+
+    period_cycles: int
+    steps_per_second: float
+    stretch_cycles: int
+    late_cycles: int
+
+
+@dataclass(frozen=True)
 class MotorPlan:
     """
     Everything decided about one motor.
@@ -76,6 +137,7 @@ class MotorPlan:
         steps_per_turn: Steps of its sequence in one turn of the shaft, or None.
         releases_at_rest: Whether the coils go off when it comes to rest.
         owns_ports: Whether the sketch leaves the motor's ports alone.
+        wish_steps_per_second: The highest rate that the sketch will ask for, or None.
     """
 
     name: str
@@ -90,6 +152,7 @@ class MotorPlan:
     steps_per_turn: Fraction | None
     releases_at_rest: bool
     owns_ports: bool
+    wish_steps_per_second: Fraction | None = None
 
     @property
     def isr_bound_cycles(self) -> int:
@@ -139,15 +202,22 @@ class Plan:
         board: The board.
         motors: Its motors, in the order of the spec.
         masked_bound_cycles: Longest stretch of a call of the library with interrupts off.
-        minimum_period_cycles: Shortest time between two steps that any motor may be given.
+        proven_period_cycles: Shortest time between two steps in which no motor loses one.
+        minimum_period_cycles: Shortest that the library accepts: that, or a longer one where every
+            motor of the spec says how fast it will be.
         largest_period_cycles: Longest time between two steps.
         uses: The other libraries of the sketch.
+        rates: For each motor its highest rates, the last one beside all that is named.
+        held_off: How long the sketch may have interrupts off at some rates, fastest last.
     """
 
     library: Library
     board: Board
     motors: tuple[MotorPlan, ...]
     masked_bound_cycles: int
+    proven_period_cycles: int
     minimum_period_cycles: int
     largest_period_cycles: int
     uses: tuple[str, ...]
+    rates: Mapping[str, tuple[RateLimit, ...]]
+    held_off: tuple[HeldOff, ...]

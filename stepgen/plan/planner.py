@@ -2,7 +2,7 @@
 From a spec to a plan: boards, pins, timers, kernels, and every conflict between them.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from stepgen.devices import Board, boards, find_board
@@ -19,14 +19,18 @@ from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Storage, allocate
 from stepgen.plan.isr import compose
 from stepgen.plan.kernels import choose_kernel
-from stepgen.plan.model import MotorPlan, Plan, TimerPlan
+from stepgen.plan.limits import (
+    Chip,
+    everything,
+    held_off,
+    rate_limit,
+    situations,
+)
+from stepgen.plan.model import MotorPlan, Plan, RateLimit, TimerPlan
 from stepgen.plan.motions import plan_motion
-from stepgen.plan.timings import plan_gate, plan_timing, shortest_period_cycles, way_out
+from stepgen.plan.timings import plan_gate, plan_timing, way_out
 from stepgen.plan.uses import Use, read_uses
 from stepgen.spec import LoadedSpec, Motor
-
-MILLIS_INTERRUPT_CYCLES = 110
-"""The most that the core's millis interrupt may take; verification proves it."""
 
 
 def make_plan(loaded: LoadedSpec) -> Plan:
@@ -55,48 +59,91 @@ def make_plan(loaded: LoadedSpec) -> Plan:
     ]
     faults.raise_if_any()
     planned = tuple(motor for motor in motors if motor)
-    shortest = _minimum_period_cycles(planned, faults)
+    masked = max(motor.masked_bound_cycles for motor in planned)
+    alone = Chip(board, planned, (), masked)
+    rates = _rates(alone, uses.values(), faults)
+    proven = max(limits[-1].period_cycles for limits in rates.values())
+    minimum = _minimum_period_cycles(planned, proven, board)
+    _report_wishes(planned, rates, board, faults)
     faults.raise_if_any()
     return Plan(
         library=spec.library,
         board=board,
         motors=planned,
-        masked_bound_cycles=_masked_bound_cycles(planned),
-        minimum_period_cycles=shortest,
+        masked_bound_cycles=masked,
+        proven_period_cycles=proven,
+        minimum_period_cycles=minimum,
         largest_period_cycles=min(motor.timing.largest_period_cycles for motor in planned),
         uses=spec.uses,
+        rates=rates,
+        held_off=held_off(everything(alone, uses.values()), minimum),
     )
 
 
-def _masked_bound_cycles(motors: tuple[MotorPlan, ...]) -> int:
+def _rates(
+    alone: Chip, uses: Collection[Use], faults: Faults
+) -> Mapping[str, tuple[RateLimit, ...]]:
     """
-    Return the longest stretch of the library's own calls with interrupts off.
-    """
-    return max((motor.masked_bound_cycles for motor in motors), default=0)
+    Return the highest rates of each motor: alone, beside millis, and beside all of *uses*.
 
-
-def _minimum_period_cycles(motors: tuple[MotorPlan, ...], faults: Faults) -> int:
+    Raises:
+        StepgenError: A motor loses steps at every rate.
     """
-    Return the shortest period in which no interrupt of any motor can be missed.
-
-    Each waits for a call of the library with interrupts off, and for every other interrupt once.
-    Where none is missed, the motor's own interrupt has nothing to make good.
-    """
-    shortest = 0
-    every = sum(motor.isr_bound_cycles for motor in motors)
-    for motor in motors:
-        own = motor.punctual_bound_cycles
-        interrupts = every - motor.isr_bound_cycles + MILLIS_INTERRUPT_CYCLES
-        masked = _masked_bound_cycles(motors)
-        period = shortest_period_cycles(motor.timing, own, interrupts, masked)
-        if period is None:
+    rates = {}
+    chips = dict(situations(alone, uses))
+    for motor in alone.motors:
+        limits = [rate_limit(chip, motor, beside) for beside, chip in chips.items()]
+        rates[motor.name] = tuple(limit for limit in limits if limit)
+        if None in limits:
             _at(faults, motor.name).at("timing").report(
-                f"step interrupts and calls of this library could keep timer "
+                f"interrupts and calls of this library could keep timer "
                 f"{motor.timing.timer.number} waiting too long for {motor.timing.kind}; take "
-                "`timing: fast-pwm`, `motion: constant`, pins on fewer ports, or fewer motors"
+                "`timing: fast-pwm`, `motion: constant`, pins on fewer ports, or less in `uses`"
             )
-        shortest = max(shortest, period or 0)
-    return shortest
+    faults.raise_if_any()
+    return rates
+
+
+def _minimum_period_cycles(motors: Sequence[MotorPlan], proven: int, board: Board) -> int:
+    """
+    Return the shortest period that the library accepts: of the fastest wish, if all have one.
+    """
+    wishes = [_period_of(motor, board) for motor in motors]
+    known = [period for period in wishes if period]
+    return max(proven, min(known)) if len(known) == len(wishes) else proven
+
+
+def _period_of(motor: MotorPlan, board: Board) -> int | None:
+    wish = motor.wish_steps_per_second
+    return None if wish is None else int(board.f_cpu_hz / wish)
+
+
+def _report_wishes(
+    motors: Iterable[MotorPlan],
+    rates: Mapping[str, tuple[RateLimit, ...]],
+    board: Board,
+    faults: Faults,
+) -> None:
+    """
+    Report each motor that is wished to be faster than proven, or slower than it can be.
+    """
+    for motor in motors:
+        limits = rates[motor.name]
+        period = _period_of(motor, board)
+        place = _at(faults, motor.name).at("max_steps_per_second")
+        if period and period < limits[-1].period_cycles:
+            highest = int(limits[-1].steps_per_second)
+            fine = [limit.beside for limit in limits[1:-1] if limit.period_cycles <= period]
+            escape = f", or empty `uses`: {fine[0]} it is safe" if fine else ""
+            place.report(
+                f"is more than the {highest} steps/s that are proven to lose none "
+                f"{limits[-1].beside}: {limits[-1].cause}; take {highest} or less{escape}"
+            )
+        elif period and period > (longest := motor.timing.largest_period_cycles):
+            place.report(
+                f"is less than a step in {longest} clocks, the longest period of "
+                f"{motor.timing.kind}; take {board.f_cpu_hz / longest:.3g} or more"
+            )
 
 
 def _at(faults: Faults, motor: str) -> Faults:
@@ -191,6 +238,7 @@ def _plan_motor(
         steps_per_turn=_steps_per_turn(motor, drive),
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",
+        wish_steps_per_second=motor.max_steps_per_second,
     )
 
 

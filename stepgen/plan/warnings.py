@@ -8,7 +8,8 @@ it does not name may be used all the same, so what it would miss is said here.
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from stepgen.devices import SKETCH_LIBRARIES, LibraryClaims, Pin, library_claims
+from stepgen.devices import SKETCH_LIBRARIES, UNBOUND, LibraryClaims, Pin, library_claims
+from stepgen.plan.limits import Chip, everything, shortest_period
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.timings import way_out
 from stepgen.plan.uses import ANALOG_WRITE, read_uses
@@ -46,8 +47,32 @@ def plan_warnings(plan: Plan) -> tuple[PlanWarning, ...]:
             *_timer_reasons(motor, plan),
             *_pwm_reasons(motor, plan),
             *_pin_reasons(motor, plan),
+            *_unbound_reasons(motor, plan),
         )
     )
+
+
+def _unbound_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
+    """
+    Yield the libraries in `uses` that can hold up *motor* for longer than anything bounds.
+    """
+    uses = tuple(read_uses(plan.uses, plan.board, lambda _index, _reason: None).values())
+    for use in uses:
+        unbound = UNBOUND.get(use.name)
+        if unbound is None:
+            continue
+        f_cpu = plan.board.f_cpu_hz
+        held = unbound.microseconds * f_cpu // 1_000_000 + unbound.cycles
+        masked = plan.masked_bound_cycles + held
+        chip = everything(Chip(plan.board, plan.motors, (), masked), uses)
+        period = shortest_period(chip, motor)
+        allowed = "no rate is safe"
+        if period is not None:
+            allowed = f"up to {f_cpu // period} steps/s are safe"
+        yield (
+            f"nothing bounds {use.name}, which {unbound.why}: it is not in the highest rate; if it "
+            f"takes {unbound.assumed}, {allowed} beside it"
+        )
 
 
 def _named(plan: Plan) -> set[str]:

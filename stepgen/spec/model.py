@@ -19,7 +19,7 @@ from stepgen.spec.motions import Motion
 from stepgen.spec.pins import PinName
 from stepgen.spec.sequence import Sequence
 from stepgen.spec.timings import Timing
-from stepgen.spec.turns import Steps
+from stepgen.spec.turns import Ratio, Steps
 
 _LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
@@ -152,6 +152,8 @@ class Motor(SpecModel):
     """Whether the sketch may write other bits of the motor's ports; `owned` is faster."""
     budget: Budget | None = None
     """What it may take of the chip at most, else verification fails."""
+    max_steps_per_second: Ratio | None = None
+    """The highest rate that the sketch will ask for; without it all that is proven."""
 
 
 class MotorInShort(Motor):

@@ -5,6 +5,8 @@ What verification found: checks, figures, and their JSON.
 from dataclasses import dataclass, field
 from typing import Any
 
+from stepgen.plan.model import RateLimit
+
 
 @dataclass(frozen=True)
 class Check:
@@ -29,6 +31,7 @@ class MotorFigures:
         cycles_per_step: Mean taken from ``loop()`` for each step of a long constant run.
         max_steps_per_second: Fastest rate that the library accepts.
         jitter_cycles: Latest edge after its deadline, in any scenario.
+        rates: The motor's highest safe rates, as planned, the last one beside all that is named.
     """
 
     measured_max: int = 0
@@ -37,6 +40,7 @@ class MotorFigures:
     max_steps_per_second: float = 0.0
     jitter_cycles: int = 0
     longest_path: tuple[str, ...] = ()
+    rates: tuple[RateLimit, ...] = ()
 
 
 @dataclass
@@ -89,6 +93,14 @@ class SpecReport:
                     "max_steps_per_second": one.max_steps_per_second,
                     "jitter_cycles": one.jitter_cycles,
                     "longest_path": list(one.longest_path),
+                    "safe_rates": [
+                        {
+                            "beside": limit.beside,
+                            "steps_per_second": limit.steps_per_second,
+                            "cause": limit.cause,
+                        }
+                        for limit in one.rates
+                    ],
                 }
                 for name, one in self.motors.items()
             },

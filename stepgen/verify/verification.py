@@ -61,6 +61,7 @@ def verify_spec(
     report.motors = {
         motor.name: MotorFigures(
             max_steps_per_second=plan.board.f_cpu_hz / plan.minimum_period_cycles,
+            rates=plan.rates[motor.name],
         )
         for motor in plan.motors
     }

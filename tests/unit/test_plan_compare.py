@@ -11,11 +11,7 @@ from stepgen.errors import StepgenError
 from stepgen.plan.instructions import Gate
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
-from stepgen.plan.timings.compare import (
-    LONGEST_OVERRUN_CYCLES,
-    LONGEST_WAIT_CYCLES,
-    shortest_period_cycles,
-)
+from stepgen.plan.timings.compare import LONGEST_OVERRUN_CYCLES, LONGEST_WAIT_CYCLES
 from stepgen.spec import load_spec
 
 Planner = Callable[[str], Plan]
@@ -70,27 +66,6 @@ def test_its_shortest_period_is_a_lap_for_the_whole_library(planned: Planner) ->
 
     assert plan.minimum_period_cycles == 256 * 8
     assert plan.largest_period_cycles == 65_535 * 1024
-
-
-@pytest.mark.parametrize(
-    ("own", "interrupts", "masked", "fits"),
-    [
-        # Nothing runs over the 1024 cycles to the next match: it waits 969 cycles, or 970.
-        (200, 500, 469, True),
-        (200, 500, 470, False),
-        # 524 + 600 run 100 over: the next match waits for those, for a call and the others.
-        (600, 345, 524, True),
-        (600, 346, 524, False),
-    ],
-)
-def test_no_match_waits_longer_than_allowed(
-    own: int, interrupts: int, masked: int, *, fits: bool
-) -> None:
-    """
-    OCR2A must be moved before the counter is at its new value, 128 ticks of 8 clocks on.
-    """
-    assert LONGEST_WAIT_CYCLES == 970
-    assert shortest_period_cycles(own, interrupts, masked) == (2048 if fits else None)
 
 
 def _walk(gate: Gate, taken: dict[str, bool]) -> tuple[int, bool]:

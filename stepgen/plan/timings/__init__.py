@@ -8,7 +8,7 @@ from typing import Any
 from stepgen.devices import Board, Mcu
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Gate, Storage
-from stepgen.plan.model import TimerPlan
+from stepgen.plan.model import Cadence, TimerPlan
 from stepgen.spec.base import KindModel
 
 
@@ -40,18 +40,12 @@ def plan_gate(timing: TimerPlan, storage: Storage, mcu: Mcu) -> Gate:
     return gate
 
 
-def shortest_period_cycles(timing: TimerPlan, own: int, interrupts: int, masked: int) -> int | None:
+def plan_cadence(timing: TimerPlan, period_cycles: int) -> Cadence:
     """
-    Return the shortest period that misses no interrupt of *timing*, None if there is none.
-
-    Args:
-        timing: The timing.
-        own: The longest step interrupt of its motor.
-        interrupts: All other interrupts together, each once.
-        masked: The longest that a call of the library has interrupts off.
+    Return how often the interrupt of *timing* comes with *period_cycles* between two steps.
     """
-    period: int | None = _module(timing.kind).shortest_period_cycles(own, interrupts, masked)
-    return period
+    cadence: Cadence = _module(timing.kind).cadence(period_cycles)
+    return cadence
 
 
 def _module(kind: str) -> Any:  # noqa: ANN401 - a module; each offers the functions above

@@ -21,10 +21,10 @@ Mode and Output Compare Unit.
 from stepgen.devices import Board
 from stepgen.plan.compare_gate import gate
 from stepgen.plan.faults import Faults
-from stepgen.plan.model import TimerPlan
+from stepgen.plan.model import Cadence, TimerPlan
 from stepgen.spec.timings.compare import Compare
 
-__all__ = ["gate", "offer", "plan", "shortest_period_cycles", "way_out"]
+__all__ = ["cadence", "gate", "offer", "plan", "way_out"]
 
 PRESCALER = 8
 LAP_CYCLES = 256 * PRESCALER
@@ -92,16 +92,11 @@ def way_out(board: Board, free: tuple[int, ...]) -> str:
     return "take a larger board, since no other timer is left on this one"
 
 
-def shortest_period_cycles(own: int, interrupts: int, masked: int) -> int | None:
+def cadence(_period_cycles: int) -> Cadence:
     """
-    Return the period of a lap, or None where something could keep a match waiting too long.
+    Return how a match comes and waits: the same at every speed.
 
-    The match of a step waits for a call and for all other interrupts. The next one comes 128 ticks
-    later at least: it waits for what the step's interrupt ran over that, and for another call; the
-    interrupts can have come before or after, but just once. The one after it is again as good as
-    the first, since a lap's interrupt is short. Each must have moved OCR2A a tick before the timer
-    is there.
+    The interrupt of a match sets the next one, 128 ticks on at least, and must have moved OCR2A a
+    tick before the timer is there. Each counts as a step, though a lap's interrupt is short.
     """
-    overrun = max(0, masked + own - NEAREST_MATCH_CYCLES)
-    waiting = masked + interrupts + overrun
-    return SMALLEST_PERIOD_CYCLES if waiting < LONGEST_WAIT_CYCLES else None
+    return Cadence(NEAREST_MATCH_CYCLES, LONGEST_WAIT_CYCLES)

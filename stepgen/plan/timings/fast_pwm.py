@@ -7,11 +7,12 @@ Source: ATmega328P datasheet, 16-bit Timer/Counter1, Fast PWM mode; system 1, ch
 from stepgen.devices import Board, Mcu, Timer16
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Gate, Storage
-from stepgen.plan.model import MotorPlan, Setting, TimerPlan
+from stepgen.plan.model import Cadence, MotorPlan, Setting, TimerPlan
 from stepgen.plan.timings import compare
 from stepgen.spec.timings.fast_pwm import FastPwm
 
 SMALLEST_PERIOD_CYCLES = 640  # system 1: 25 000 steps/s at 16 MHz
+_FLAG_CYCLES = 5  # the longest response of an interrupt, which clears its flag
 PRESCALERS = (1, 8, 64, 256, 1024)
 LARGEST_TICKS = 65_535
 LARGEST_PERIOD_CYCLES = LARGEST_TICKS * PRESCALERS[-1]
@@ -73,16 +74,14 @@ def gate(_timer: Timer16, _storage: Storage, _mcu: Mcu) -> Gate:
     return Gate()
 
 
-def shortest_period_cycles(own: int, interrupts: int, masked: int) -> int:
+def cadence(period_cycles: int) -> Cadence:
     """
-    Return the shortest period in which no overflow can be missed.
+    Return how an overflow comes and waits at *period_cycles* between steps.
 
-    The timer keeps one overflow that waits, not two: each must be served before the next. It
-    waits for all else, and for what the motor's own last interrupt ran over its period P:
-    own + others - P. So P > others + (own + others - P), which is P > others + own / 2.
+    The timer keeps one overflow that waits, not two: each must be taken, and its flag cleared by
+    the chip's response, before the next.
     """
-    others = interrupts + masked
-    return max(SMALLEST_PERIOD_CYCLES, others + own // 2 + 1)
+    return Cadence(period_cycles, period_cycles - _FLAG_CYCLES)
 
 
 def choose_setting(period_cycles: int) -> Setting:

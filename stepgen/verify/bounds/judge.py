@@ -4,9 +4,9 @@ Judging a library by its worst case: what was measured, what was planned, what t
 
 from collections.abc import Iterator
 
+from stepgen.devices import MILLIS
 from stepgen.errors import StepgenError
 from stepgen.plan.model import MotorPlan, Plan
-from stepgen.plan.planner import MILLIS_INTERRUPT_CYCLES
 from stepgen.spec import LoadedSpec
 from stepgen.verify.bounds.worst_case import Bound, WorstCase, longest
 from stepgen.verify.compilers import Compiler
@@ -42,7 +42,7 @@ def judge_worst_case(
     for motor in plan.motors:
         findings += _judge_motor(motor, steps[motor.name], loaded, report)
     findings += _over("a call can have interrupts off for", masked, plan.masked_bound_cycles)
-    findings += _over("the millis interrupt can take", millis, MILLIS_INTERRUPT_CYCLES)
+    findings += _over("the millis interrupt can take", millis, MILLIS.cycles)
     if report.masked_cycles > masked.cycles:
         findings.append(f"interrupts were off for {report.masked_cycles} of {masked.cycles} cycles")
     report.stack_bound_bytes = max(bound.stack_bytes for bound in steps.values())
@@ -82,5 +82,5 @@ def _summary(plan: Plan, steps: dict[str, Bound], masked: Bound, millis: Bound) 
     return (
         f"by the plan's cycles at most: step interrupt {motors}, interrupts off in a call "
         f"{masked.cycles} of {plan.masked_bound_cycles}, millis interrupt {millis.cycles} of "
-        f"{MILLIS_INTERRUPT_CYCLES}"
+        f"{MILLIS.cycles}"
     )

@@ -2,7 +2,7 @@
 The longest stretch that the main line has interrupts off: from CLI until SREG is restored.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from stepgen.errors import StepgenError
@@ -44,10 +44,20 @@ class MaskedSections:
         Raises:
             StepgenError: There is none, or one has no bound.
         """
-        ways = [self._search.longest(line.address, self._reach(line)) for line in self._starts]
+        ways = [way for _, way in self.each()]
         if not ways:
             raise StepgenError.of(f"nothing of {self._source} ever switches interrupts off")
         return max(ways, key=lambda way: way.cycles)
+
+    def each(self) -> Iterator[tuple[int, Way]]:
+        """
+        Yield where each of them begins, and the longest way through it.
+
+        Raises:
+            StepgenError: One has no bound.
+        """
+        for line in self._starts:
+            yield line.address, self._search.longest(line.address, self._reach(line))
 
     @cached_property
     def _starts(self) -> list[Line]:
