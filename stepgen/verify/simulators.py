@@ -170,6 +170,7 @@ AVR8JS = Simulator(
     longest_scenario_cycles=_AVR8JS_CYCLES,
     corrected=frozenset(
         {"prescaler-phase", "count-kept", "start-order", "flag-sbi", "port-write-cycles"}
+        | {"ctc-wrap", "compare-flag-edge", "timer2-compare"}
         | {"instruction-cycles", "instruction-cycles-1280", "instruction-cycles-2560"}
         | _MASKING
         | _RESPONSES
