@@ -52,10 +52,10 @@ lint: $(STAMPS)/dev  ## Run ruff and mypy.
 verify: setup  ## Compile, simulate and compare the library of each spec.
 	$(BIN)/stepgen verify specs/*.yaml
 
-matrix: setup  ## The same on every compiler, several at a time.
-	$(BIN)/stepgen matrix --jobs $(JOBS)
+matrix: setup  ## The same on every compiler and every simulator that is installed, in one table.
+	$(BIN)/stepgen matrix --simulator all --jobs $(JOBS)
 
-campaign: setup  ## Run the long random campaigns, which `make test` leaves out.
+campaign: setup  ## Run what takes long: random campaigns, every spec on each compiler and simulator.
 	$(BIN)/pytest -n $(JOBS) -m campaign
 
 yasimavr: setup $(STAMPS)/yasimavr  ## Compile the third simulator and run the tests on it.

@@ -19,6 +19,8 @@ from stepgen.verify.trace import Run
 from stepgen.verify.verification import verify_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
+EVERY_SPEC = sorted(path.stem for path in SPECS.glob("*.yaml"))
+ATMEGA328P = [name for name in EVERY_SPEC if not name.startswith("mega")]
 # Speeds that change across prescalers, by calls and by update events; scenarios of theirs.
 BY_EVENTS = "motor: events each few milliseconds, by the interrupt, across prescalers"
 ACROSS_PRESCALERS = {
@@ -27,7 +29,9 @@ ACROSS_PRESCALERS = {
 }
 
 
-@pytest.mark.parametrize("name", [*ACROSS_PRESCALERS, "uno_mixed_ports", "mega_pan_tilt"])
+@pytest.mark.parametrize(
+    "name", [*ACROSS_PRESCALERS, "uno_mixed_ports", "mega_pan_tilt", "uno_servo_beside_variable"]
+)
 def test_avr8js_moves_the_motors_as_the_model_says(name: str) -> None:
     """
     Each scenario that is short enough gives the model's edges, to the cycle.
@@ -42,17 +46,42 @@ def test_avr8js_moves_the_motors_as_the_model_says(name: str) -> None:
     assert len(report.checks) > 10
 
 
+@pytest.mark.campaign
+@pytest.mark.parametrize("compiler", ["gcc-5.4", "gcc-7.3"])
+@pytest.mark.parametrize("name", EVERY_SPEC)
+@pytest.mark.parametrize("simulator", [SIMAVR, AVR8JS], ids=lambda one: one.name)
+def test_every_spec_agrees_with_the_model(simulator: Simulator, name: str, compiler: str) -> None:
+    """
+    simavr and avr8js are refused for no spec, and give the model's edges to the cycle.
+    """
+    report = api.verify(SPECS / f"{name}.yaml", compiler=compiler, simulator=simulator.name)
+
+    assert simulator.tolerance_cycles == 0
+    assert [check for check in report.checks if not check.passed] == []
+
+
 @pytest.mark.yasimavr
-@pytest.mark.parametrize("name", [*ACROSS_PRESCALERS, "uno_mixed_ports"])
+@pytest.mark.parametrize("name", ATMEGA328P)
 def test_yasimavr_moves_the_motors_as_the_model_says(name: str) -> None:
     """
-    Each scenario that is short enough gives the model's edges, within a cycle.
+    It is refused for no spec of the ATmega328P; its edges are the model's, within a cycle.
     """
     report = api.verify(SPECS / f"{name}.yaml", simulator="yasimavr")
 
     assert YASIMAVR.tolerance_cycles == 1
     assert [check for check in report.checks if not check.passed] == []
     assert len(report.checks) > 7
+
+
+@pytest.mark.yasimavr
+@pytest.mark.parametrize("name", sorted({*EVERY_SPEC} - {*ATMEGA328P}))
+def test_yasimavr_is_refused_for_a_chip_that_it_lacks(name: str) -> None:
+    """
+    A spec for a Mega names the chip as the reason, and no other.
+    """
+    reason = api.usable_simulators(SPECS / f"{name}.yaml")["yasimavr"]
+
+    assert reason in {f"yasimavr 0.1.6 has no ATmega{number}" for number in (1280, 2560)}
 
 
 @pytest.mark.parametrize("simulator", [SIMAVR, AVR8JS], ids=lambda one: one.name)
