@@ -52,7 +52,7 @@ def test_avr8js_moves_the_motors_as_the_model_says(name: str) -> None:
 @pytest.mark.parametrize("simulator", [SIMAVR, AVR8JS], ids=lambda one: one.name)
 def test_every_spec_agrees_with_the_model(simulator: Simulator, name: str, compiler: str) -> None:
     """
-    simavr and avr8js are refused for no spec, and give the model's edges to the cycle.
+    No spec is refused by simavr or avr8js, which give the model's edges to the cycle.
     """
     report = api.verify(SPECS / f"{name}.yaml", compiler=compiler, simulator=simulator.name)
 
