@@ -145,7 +145,7 @@ SIMAVR = Simulator(
     simavr.find_version,
     simavr.Machine,
     simavr.INSTALL,
-    # What simavr 1.6 itself was seen to do wrong; its 16-bit timers are replaced as a whole.
+    # What simavr 1.6 itself was seen to do wrong; its timers 1 to 5 are replaced as a whole.
     corrected=frozenset(
         {"double-buffer", "slow-step", "prescaler-phase", "count-kept", "count-zero-loads-nothing"}
         | {"late-compare-shows", "fast-pwm-icr-period", "ctc-icr-period", "ctc-wrap"}

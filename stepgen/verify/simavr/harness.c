@@ -205,7 +205,7 @@ uint8_t machine_register(machine *m, uint16_t address)
         READ_SREG_INTO(avr, avr->data[ADDRESS_SREG]);
     slot *s = address >= 32 && address < MAX_IOs + 32 ? &m->slots[AVR_DATA_TO_IO(address)] : NULL;
     if (s && s->role == ROLE_TIMER)
-        return timer16_peek(s->timer, address, avr->cycle);
+        return timer_peek(s->timer, address, avr->cycle);
     if (s && s->role == ROLE_PIN) {
         uint8_t out = avr->data[address + 1];
         return (uint8_t)((avr->data[address] & ~out) | (avr->data[address + 2] & out));
