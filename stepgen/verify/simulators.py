@@ -131,7 +131,7 @@ class Simulator:
 
 
 # Longer ones take too much of real time: a busy sketch runs at 16 to 27 MHz in avr8js, at 0.5 to
-# 0.8 MHz in yasimavr, which is run instruction by instruction; in simavr at 90 to 130 MHz.
+# 0.8 MHz in yasimavr, which is run instruction by instruction; for simavr see `make benchmark`.
 _AVR8JS_CYCLES = 16_000_000
 _YASIMAVR_CYCLES = 3_200_000
 

@@ -35,6 +35,8 @@ void machine_fail(machine *m, const char *format, ...)
 
 event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source, uint32_t value)
 {
+    if (m->silent)
+        return NULL;
     event *e = recorder_add(&m->recorder, kind, cycle, source, value);
     if (!e)
         machine_fail(m, "too many events: call clear_events() now and then");
@@ -186,6 +188,11 @@ uint32_t machine_pc(const machine *m)
 void machine_set_fine(machine *m, int on)
 {
     m->fine = on;
+}
+
+void machine_set_recording(machine *m, int on)
+{
+    m->silent = !on;
 }
 
 uint32_t machine_ram_end(const machine *m)

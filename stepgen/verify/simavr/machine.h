@@ -75,10 +75,11 @@ struct machine {
 
     int stop, wanted_mark, marked;
     int fine, was_enabled;
+    int silent; /* record nothing */
     char error[MAX_ERROR];
 };
 
-/* Record an event; a full recorder fails the machine. */
+/* Record an event; a full recorder fails the machine. NULL if it fails or is silent. */
 event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source, uint32_t value);
 
 /* Stop the run with an error, once: the first one counts. */

@@ -92,6 +92,12 @@ class Machine(Loaded):
         self._fine = on
         self._lib.machine_set_fine(self._open, on)
 
+    def record(self, *, on: bool) -> None:
+        """
+        Record events, as from the start, or none: a benchmark wants to know what that costs.
+        """
+        self._lib.machine_set_recording(self._open, on)
+
     def run_until(self, cycle: int) -> None:
         """
         Run to the first instruction boundary at or after *cycle*.
