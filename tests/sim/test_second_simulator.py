@@ -89,22 +89,43 @@ def test_the_slow_step_of_a_wrong_library_is_seen(simulator: Simulator, tmp_path
     """
     A library that leaves out mode 12 runs a period with the old TOP; both simulators show it.
     """
-    templates = tmp_path / "templates"
+    templates = altered("timings/fast_pwm.j2", "  {{ timer.tccra }} = 0;\n", "", tmp_path)
+
+    failed = failed_checks("uno_motor_shield", simulator, templates)
+
+    assert "restart while running" in failed
+
+
+def test_a_match_that_is_a_tick_late_is_seen(tmp_path: Path) -> None:
+    """
+    A library that starts timer 2 without allowing for its first tick: avr8js shows 8 cycles.
+    """
+    right, late = "motion.next.first - 1;", "motion.next.first;"
+    templates = altered("timings/compare.j2", right, late, tmp_path)
+
+    assert "stop while running" in failed_checks("uno_servo_beside", AVR8JS, templates)
+
+
+def altered(name: str, old: str, new: str, folder: Path) -> Path:
+    """
+    Return a copy of the templates in which the one called *name* has *new* in place of *old*.
+    """
+    templates = folder / "templates"
     shutil.copytree(template_dir(), templates)
-    timing = templates / "timings/fast_pwm.j2"
-    text = timing.read_text(encoding="utf-8")
-    direct = "  {{ timer.tccra }} = 0;\n"
-    assert direct in text
-    timing.write_text(text.replace(direct, ""), encoding="utf-8")
+    template = templates / name
+    text = template.read_text(encoding="utf-8")
+    assert old in text
+    template.write_text(text.replace(old, new), encoding="utf-8")
+    return templates
 
-    report = verify_spec(
-        load_spec(SPECS / "uno_motor_shield.yaml"),
-        default_compiler(),
-        simulator=simulator,
-        templates=templates,
-    )
 
-    assert "restart while running" in {check.name for check in report.checks if not check.passed}
+def failed_checks(spec: str, simulator: Simulator, templates: Path) -> set[str]:
+    """
+    Return the names of the checks that fail with *templates*.
+    """
+    loaded = load_spec(SPECS / f"{spec}.yaml")
+    report = verify_spec(loaded, default_compiler(), simulator=simulator, templates=templates)
+    return {check.name for check in report.checks if not check.passed}
 
 
 def test_the_tolerance_is_no_wider_than_it_says() -> None:
