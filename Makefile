@@ -30,7 +30,7 @@ export PYMCU_TOOLCHAIN_NO_SEEDING := 1
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo test lint verify matrix generated campaign yasimavr setup debian clean distclean
+.PHONY: help demo test lint verify matrix generated campaign yasimavr benchmark setup debian clean distclean
 
 help:  ## Show this list.
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
@@ -47,19 +47,22 @@ test: setup lint  ## Install what is missing, then run the linters and every tes
 lint: $(STAMPS)/dev  ## Run ruff and mypy.
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy --explicit-package-bases stepgen tests
+	$(BIN)/mypy --explicit-package-bases stepgen tests benchmarks
 
 verify: setup  ## Compile, simulate and compare the library of each spec.
 	$(BIN)/stepgen verify specs/*.yaml
 
-matrix: setup  ## The same on every compiler, several at a time.
-	$(BIN)/stepgen matrix --jobs $(JOBS)
+matrix: setup  ## The same on every compiler and every simulator that is installed, in one table.
+	$(BIN)/stepgen matrix --simulator all --jobs $(JOBS)
 
-campaign: setup  ## Run the long random campaigns, which `make test` leaves out.
+campaign: setup  ## Run what takes long: random campaigns, every spec on each compiler and simulator.
 	$(BIN)/pytest -n $(JOBS) -m campaign
 
 yasimavr: setup $(STAMPS)/yasimavr  ## Compile the third simulator and run the tests on it.
 	$(BIN)/pytest -n $(JOBS) -m yasimavr
+
+benchmark: setup  ## Measure how fast simulation is on this machine.
+	$(BIN)/python -m benchmarks
 
 generated: $(STAMPS)/runtime  ## Write the checked-in library of each spec again.
 	$(BIN)/stepgen check specs/*.yaml

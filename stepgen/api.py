@@ -248,6 +248,15 @@ def verify(
     return verify_spec(load_spec(path), chosen, simulator=simulator_named(simulator), track=track)
 
 
+def tolerances() -> dict[str, int]:
+    """
+    Return the simulators that are here -> how many cycles from the model's an edge may be there.
+    """
+    from stepgen.verify.simulators import installed  # noqa: PLC0415 - as in verify
+
+    return {simulator.name: simulator.tolerance_cycles for simulator in installed()}
+
+
 def usable_simulators(path: Path, *, compiler: str | None = None) -> dict[str, str]:
     """
     Return every simulator that stepgen knows -> why it is not used for the spec in *path*.

@@ -20,7 +20,11 @@ if TYPE_CHECKING:
 EXAMPLE = "Example: stepgen matrix --jobs 2"
 
 _DEFAULT_FOLDER = Path("specs")
-_HEADING = ("spec", "compiler", "result", "flash", "RAM", "a step", "longest")
+_ALL = "all"
+_FIGURES = ("flash", "RAM", "a step", "longest")
+
+Job = tuple[Path, str, str]
+"""Spec, compiler and simulator."""
 
 
 def matrix(
@@ -32,11 +36,20 @@ def matrix(
     jobs: Annotated[
         int, typer.Option("--jobs", "-j", min=1, metavar="N", help="How many at once.")
     ] = os.cpu_count() or 1,
+    simulator: Annotated[
+        str,
+        typer.Option(
+            "--simulator", metavar="NAME", help="simavr, avr8js, yasimavr, or all that are here."
+        ),
+    ] = "simavr",
 ) -> None:
     """
     Compile and verify every spec with every compiler that is installed, and show a table.
 
-    Flash and RAM in bytes over an empty sketch; cycles a step takes, and the longest interrupt.
+    A column for each simulator says whether all edges are where the model has them, to the cycle
+    or to the cycles in its heading; - that it cannot be used for the spec, with the reason below
+    the table. Flash and RAM in bytes over an empty sketch; cycles a step takes, and the longest
+    interrupt.
 
     Exit code 1 if any of them fails.
     """
@@ -46,21 +59,31 @@ def matrix(
     api.generate_all(paths)
     from stepgen.verify.toolchain import find_compilers  # noqa: PLC0415 - only needed here
 
+    simulators = [*api.tolerances()] if simulator == _ALL else [simulator]
     pairs = [(path, compiler.name) for path in paths for compiler in find_compilers()]
     with ProcessPoolExecutor(max_workers=jobs) as pool:
-        futures = {pool.submit(_verify, path, name): (path, name) for path, name in pairs}
+        futures = {
+            pool.submit(_verify, *pair, name, may_refuse=simulator == _ALL): (*pair, name)
+            for pair in pairs
+            for name in simulators
+        }
         with progress("verifying") as track:
             for _ in track(_Finishing(futures)):
                 pass
-    reports = {pair: future.result() for future, pair in futures.items()}
-    print_tables([("", _HEADING, [_row(reports[pair]) for pair in pairs])])
-    failed = [reports[pair] for pair in pairs if not reports[pair].passed]
+    results = {job: future.result() for future, job in futures.items()}
+    heading = ("spec", "compiler", *map(_title, simulators), *_FIGURES)
+    print_tables([("", heading, [_row(*pair, simulators, results) for pair in pairs])])
+    _say_what_is_left_out(results)
+    failed = [one for one in results.values() if not isinstance(one, str) and not one.passed]
     for report in failed:
-        for check in report.checks:
-            if not check.passed:
-                complain(f"{report.spec} ({report.compiler}): {check.name}: {check.detail}")
+        _say_failures(report)
     if failed:
         raise typer.Exit(FAILED)
+
+
+def _title(simulator: str) -> str:
+    tolerance_cycles = api.tolerances().get(simulator, 0)
+    return f"{simulator} +-{tolerance_cycles}" if tolerance_cycles else simulator
 
 
 class _Finishing:
@@ -68,28 +91,66 @@ class _Finishing:
     The futures in the order in which they finish, with a length for the progress bar.
     """
 
-    def __init__(self, futures: dict[Future["SpecReport"], tuple[Path, str]]) -> None:
+    def __init__(self, futures: dict[Future["SpecReport | str"], Job]) -> None:
         self._futures = futures
 
     def __len__(self) -> int:
         return len(self._futures)
 
-    def __iter__(self) -> Iterator[Future["SpecReport"]]:
+    def __iter__(self) -> Iterator[Future["SpecReport | str"]]:
         return as_completed(self._futures)
 
 
-def _verify(path: Path, compiler: str) -> "SpecReport":
-    return api.verify(path, compiler=compiler)
+def _verify(path: Path, compiler: str, simulator: str, *, may_refuse: bool) -> "SpecReport | str":
+    """
+    Return the report, or why *simulator* cannot be used for the spec in *path*.
+    """
+    reason = api.usable_simulators(path, compiler=compiler)[simulator] if may_refuse else ""
+    return reason or api.verify(path, compiler=compiler, simulator=simulator)
 
 
-def _row(report: "SpecReport") -> tuple[str, ...]:
+def _row(
+    path: Path, compiler: str, simulators: list[str], results: dict[Job, "SpecReport | str"]
+) -> tuple[str, ...]:
+    """
+    Return the row of one spec and compiler; the figures are those of the first simulator.
+    """
+    of_each = [results[path, compiler, name] for name in simulators]
+    report = next((one for one in of_each if not isinstance(one, str)), None)
+    if report is None:
+        raise StepgenError.of("no simulator can be used for this spec", place=str(path))
     motors = report.motors.values()
     return (
-        Path(report.spec).stem,
-        report.compiler,
-        "passed" if report.passed else "FAILED",
+        path.stem,
+        compiler,
+        *map(_verdict, of_each),
         str(report.flash_bytes),
         str(report.ram_bytes),
         f"{max(motor.cycles_per_step for motor in motors):g}",
         str(max(motor.measured_max for motor in motors)),
     )
+
+
+def _verdict(result: "SpecReport | str") -> str:
+    if isinstance(result, str):
+        return "-"
+    return "passed" if result.passed else "FAILED"
+
+
+def _say_what_is_left_out(results: dict[Job, "SpecReport | str"]) -> None:
+    """
+    Say each reason for which a simulator was not used, once, and for which specs.
+    """
+    specs: dict[str, list[str]] = {}
+    for (path, _, _), result in results.items():
+        if isinstance(result, str) and path.stem not in specs.setdefault(result, []):
+            specs[result].append(path.stem)
+    for reason, stems in specs.items():
+        complain(f"left out: {reason}: {', '.join(stems)}")
+
+
+def _say_failures(report: "SpecReport") -> None:
+    tools = f"{report.compiler}, {report.simulator}"
+    for check in report.checks:
+        if not check.passed:
+            complain(f"{report.spec} ({tools}): {check.name}: {check.detail}")

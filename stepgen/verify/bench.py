@@ -132,8 +132,7 @@ class Bench:
             StepgenError: The sketch did not get round to it, or did not return.
         """
         loop = self.machine.read_ram(self._mailbox + _LOOP_OFFSET, 1)[0]
-        message = _MAILBOX.pack(*_arguments(call, loop), 0, 0, 0, 0)
-        self.machine.write_ram(self._mailbox, message)
+        self.machine.write_ram(self._mailbox, mail(call, Loop(loop)))
         begin = self._run_to_mark(_MARK_BEGIN, call)
         self.machine.fine = True
         end = self._run_to_mark(_MARK_END, call)
@@ -165,12 +164,13 @@ class Bench:
             self.machine.run_until(self.machine.cycle + 1)
 
 
-def _arguments(call: Call, loop: int) -> tuple[int, ...]:
+def mail(call: Call, loop: Loop) -> bytes:
     """
-    Return the fields of the mailbox that come before its answer.
+    Return what the mailbox holds for *call*, with an empty answer, and *loop* between calls.
     """
     update = (call.modification, call.interval, call.count)
-    return (call.kind, call.motor, loop, call.control, call.top, call.limit, *update)
+    arguments = (call.kind, call.motor, loop, call.control, call.top, call.limit, *update)
+    return _MAILBOX.pack(*arguments, 0, 0, 0, 0)
 
 
 def watched_registers(plan: Plan) -> list[int]:

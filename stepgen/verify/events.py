@@ -34,7 +34,7 @@ class Kind(IntEnum):
     UNMASKED = 8
     """The main program set the I flag (fine recording only)."""
     RAISE = 9
-    """An enabled flag of a 16-bit timer came: vector, 1 if it was still raised (lost)."""
+    """An enabled flag of a timer but 0 came: vector, 1 if it was still raised (lost)."""
 
 
 Event: TypeAlias = np.void

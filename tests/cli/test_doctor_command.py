@@ -31,7 +31,7 @@ def test_it_shows_tools_points_and_what_is_wrong() -> None:
     for text in ("gcc-5.4", "5.4.0", "simavr", "avr8js", "0.21.1", "corrected"):
         assert text in run.output
     assert (
-        "  avr8js: mode 4: OCR1A below TCNT1 is met after a lap of 65 536 (ctc-wrap)\n"
+        "  avr8js: mode 12: capture flag each p x (ICR1 + 1) cycles (ctc-icr-period)\n"
         in run.output
     )
     assert "    needed by: nothing\n" in run.output

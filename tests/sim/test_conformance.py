@@ -25,14 +25,13 @@ UNO, MEGA = SPECS / "uno_motor_shield.yaml", SPECS / "mega_pan_tilt.yaml"
 THIRD = pytest.param(YASIMAVR, marks=pytest.mark.yasimavr)
 
 # What cannot be put right, as `stepgen doctor` and the README list it. Of avr8js 0.21.1: no capture
-# flag in mode 12; "fires early" where OCR1A is below TCNT1; TEMP and ICR1 are no registers of their
-# own; no transmit buffer. Of yasimavr 0.1.6: no compare pins. Both load the buffer at TCNT1 = 0.
+# flag in mode 12; TEMP and ICR1 are no registers of their own; no transmit buffer. Of yasimavr
+# 0.1.6: no compare pins. Both load the buffer at TCNT1 = 0.
 WRONG = {
     "simavr": {"compare-pins"},
     "avr8js": {
-        *("ctc-icr-period", "count-zero-loads-nothing", "ctc-wrap", "compare-flag-edge"),
+        *("ctc-icr-period", "count-zero-loads-nothing"),
         *("temp-register", "icr-read-only", "uart-buffer", "uart-status"),
-        "timer2-compare",
     },
     "yasimavr": {
         *("ctc-icr-period", "count-zero-loads-nothing", "icr-read-only"),
@@ -128,17 +127,9 @@ def test_every_kind_declares_the_points_that_it_needs() -> None:
 @pytest.mark.parametrize("simulator", [SIMAVR, AVR8JS], ids=name_of)
 def test_every_spec_can_be_verified_on_two_simulators(simulator: Simulator, spec: Path) -> None:
     """
-    Neither simavr nor avr8js is unlike the chip in what a spec depends on, but for timer 2.
-
-    avr8js has no description of timer 2 here, and is refused for it with that reason.
+    Neither simavr nor avr8js is unlike the chip in what a spec depends on.
     """
-    plan = api.plan(spec)
-    reason = needs.refusal(plan, simulator, default_compiler())
-
-    if simulator is AVR8JS and "compare" in {motor.timing.kind for motor in plan.motors}:
-        assert "timer2-compare" in reason
-    else:
-        assert reason == ""
+    assert needs.refusal(api.plan(spec), simulator, default_compiler()) == ""
 
 
 def test_a_simulator_that_fails_a_needed_point_is_refused_with_the_reason() -> None:

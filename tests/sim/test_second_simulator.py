@@ -19,6 +19,8 @@ from stepgen.verify.trace import Run
 from stepgen.verify.verification import verify_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
+EVERY_SPEC = sorted(path.stem for path in SPECS.glob("*.yaml"))
+ATMEGA328P = [name for name in EVERY_SPEC if not name.startswith("mega")]
 # Speeds that change across prescalers, by calls and by update events; scenarios of theirs.
 BY_EVENTS = "motor: events each few milliseconds, by the interrupt, across prescalers"
 ACROSS_PRESCALERS = {
@@ -27,7 +29,9 @@ ACROSS_PRESCALERS = {
 }
 
 
-@pytest.mark.parametrize("name", [*ACROSS_PRESCALERS, "uno_mixed_ports", "mega_pan_tilt"])
+@pytest.mark.parametrize(
+    "name", [*ACROSS_PRESCALERS, "uno_mixed_ports", "mega_pan_tilt", "uno_servo_beside_variable"]
+)
 def test_avr8js_moves_the_motors_as_the_model_says(name: str) -> None:
     """
     Each scenario that is short enough gives the model's edges, to the cycle.
@@ -42,11 +46,25 @@ def test_avr8js_moves_the_motors_as_the_model_says(name: str) -> None:
     assert len(report.checks) > 10
 
 
+@pytest.mark.campaign
+@pytest.mark.parametrize("compiler", ["gcc-5.4", "gcc-7.3"])
+@pytest.mark.parametrize("name", EVERY_SPEC)
+@pytest.mark.parametrize("simulator", [SIMAVR, AVR8JS], ids=lambda one: one.name)
+def test_every_spec_agrees_with_the_model(simulator: Simulator, name: str, compiler: str) -> None:
+    """
+    No spec is refused by simavr or avr8js, which give the model's edges to the cycle.
+    """
+    report = api.verify(SPECS / f"{name}.yaml", compiler=compiler, simulator=simulator.name)
+
+    assert simulator.tolerance_cycles == 0
+    assert [check for check in report.checks if not check.passed] == []
+
+
 @pytest.mark.yasimavr
-@pytest.mark.parametrize("name", [*ACROSS_PRESCALERS, "uno_mixed_ports"])
+@pytest.mark.parametrize("name", ATMEGA328P)
 def test_yasimavr_moves_the_motors_as_the_model_says(name: str) -> None:
     """
-    Each scenario that is short enough gives the model's edges, within a cycle.
+    It is refused for no spec of the ATmega328P; its edges are the model's, within a cycle.
     """
     report = api.verify(SPECS / f"{name}.yaml", simulator="yasimavr")
 
@@ -55,27 +73,59 @@ def test_yasimavr_moves_the_motors_as_the_model_says(name: str) -> None:
     assert len(report.checks) > 7
 
 
+@pytest.mark.yasimavr
+@pytest.mark.parametrize("name", sorted({*EVERY_SPEC} - {*ATMEGA328P}))
+def test_yasimavr_is_refused_for_a_chip_that_it_lacks(name: str) -> None:
+    """
+    A spec for a Mega names the chip as the reason, and no other.
+    """
+    reason = api.usable_simulators(SPECS / f"{name}.yaml")["yasimavr"]
+
+    assert reason in {f"yasimavr 0.1.6 has no ATmega{number}" for number in (1280, 2560)}
+
+
 @pytest.mark.parametrize("simulator", [SIMAVR, AVR8JS], ids=lambda one: one.name)
 def test_the_slow_step_of_a_wrong_library_is_seen(simulator: Simulator, tmp_path: Path) -> None:
     """
     A library that leaves out mode 12 runs a period with the old TOP; both simulators show it.
     """
-    templates = tmp_path / "templates"
+    templates = altered("timings/fast_pwm.j2", "  {{ timer.tccra }} = 0;\n", "", tmp_path)
+
+    failed = failed_checks("uno_motor_shield", simulator, templates)
+
+    assert "restart while running" in failed
+
+
+def test_a_match_that_is_a_tick_late_is_seen(tmp_path: Path) -> None:
+    """
+    A library that starts timer 2 without allowing for its first tick: avr8js shows 8 cycles.
+    """
+    right, late = "motion.next.first - 1;", "motion.next.first;"
+    templates = altered("timings/compare.j2", right, late, tmp_path)
+
+    assert "stop while running" in failed_checks("uno_servo_beside", AVR8JS, templates)
+
+
+def altered(name: str, old: str, new: str, folder: Path) -> Path:
+    """
+    Return a copy of the templates in which the one called *name* has *new* in place of *old*.
+    """
+    templates = folder / "templates"
     shutil.copytree(template_dir(), templates)
-    timing = templates / "timings/fast_pwm.j2"
-    text = timing.read_text(encoding="utf-8")
-    direct = "  {{ timer.tccra }} = 0;\n"
-    assert direct in text
-    timing.write_text(text.replace(direct, ""), encoding="utf-8")
+    template = templates / name
+    text = template.read_text(encoding="utf-8")
+    assert old in text
+    template.write_text(text.replace(old, new), encoding="utf-8")
+    return templates
 
-    report = verify_spec(
-        load_spec(SPECS / "uno_motor_shield.yaml"),
-        default_compiler(),
-        simulator=simulator,
-        templates=templates,
-    )
 
-    assert "restart while running" in {check.name for check in report.checks if not check.passed}
+def failed_checks(spec: str, simulator: Simulator, templates: Path) -> set[str]:
+    """
+    Return the names of the checks that fail with *templates*.
+    """
+    loaded = load_spec(SPECS / f"{spec}.yaml")
+    report = verify_spec(loaded, default_compiler(), simulator=simulator, templates=templates)
+    return {check.name for check in report.checks if not check.passed}
 
 
 def test_the_tolerance_is_no_wider_than_it_says() -> None:

@@ -416,6 +416,25 @@ def test_fine_recording_shows_when_interrupts_are_off(start: Start) -> None:
     assert off - on == 3 + inside
 
 
+def test_without_recording_the_program_runs_the_same(start: Start) -> None:
+    """
+    Nothing is recorded while it is off, and what comes after is at the cycles that it has anyway.
+    """
+    seen = []
+    for on in (True, False):
+        machine = start("periodic", MODE=15, CLOCK=1, TOP_VALUE=999)
+        machine.record(on=on)
+        machine.run_until(20_000)
+        assert bool(len(machine.events())) == on
+        machine.record(on=True)
+        machine.clear_events()
+        machine.run_until(40_000)
+        seen.append(machine.events().tolist())
+
+    assert seen[0] == seen[1]
+    assert len(seen[0]) > 40
+
+
 def test_fine_recording_changes_no_cycle(start: Start) -> None:
     """
     Looking at each instruction alone gives the same events at the same cycles.

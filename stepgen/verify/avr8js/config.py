@@ -2,16 +2,17 @@
 The chip as avr8js wants it described: made from the device tables, the same for every chip.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-from stepgen.devices import Mcu, Timer16, Vector
+from stepgen.devices import Mcu, Timer, Timer8, Timer16, Vector
 
 _WORDS_PER_VECTOR = 2
 _TIMER0 = {"TIFR": 0x35, "OCRA": 0x47, "OCRB": 0x48, "TCNT": 0x46, "TCCRA": 0x44, "TCCRB": 0x45}
 _TIMER0_TIMSK = 0x6E
 _USART0 = {"UCSRA": 0xC0, "UCSRB": 0xC1, "UCSRC": 0xC2, "UBRRL": 0xC4, "UBRRH": 0xC5, "UDR": 0xC6}
-_DIVIDERS = {0: 0, 1: 1, 2: 8, 3: 64, 4: 256, 5: 1024, 6: 0, 7: 0}
+_CLOCK_SELECTS = range(8)
+_NO_16_BIT_REGISTERS = {"OCRC": 0, "ICR": 0, "TCCRC": 0, "captureInterrupt": 0}
 # Bits of TIFRn and of TIMSKn, and the vectors behind them.
 _TOV, _OCFA, _OCFB, _OCFC = 1, 2, 4, 8
 # Pin change interrupts of port B, the same registers on both chips: PCICR bit 0.
@@ -22,14 +23,18 @@ def describe(mcu: Mcu) -> dict[str, Any]:
     """
     Return ports, timers and USART0 of *mcu* as the driver hands them to avr8js.
 
-    Timer 2, the ADC, SPI, TWI and the watchdog are left out: a program that waits for them hangs.
+    The ADC, SPI, TWI and the watchdog are left out: a program that waits for them hangs.
     """
     return {
         "flash_bytes": mcu.flash_bytes,
         "ram_end": mcu.ram_start + mcu.ram_bytes - 1,
         "response_cycles": mcu.response_cycles,
         "ports": list(_ports(mcu)),
-        "timers": [_timer0(mcu), *(_timer16(timer, mcu) for timer in mcu.timers16)],
+        "timers": [
+            _timer0(mcu),
+            *(_timer8(timer, mcu) for timer in mcu.timers8),
+            *(_timer16(timer, mcu) for timer in mcu.timers16),
+        ],
         "usart": {
             **_USART0,
             "rxCompleteInterrupt": _address(_usart_vector(mcu, "RX")),
@@ -56,12 +61,20 @@ def _ports(mcu: Mcu) -> Iterator[dict[str, Any]]:
 def _timer0(mcu: Mcu) -> dict[str, Any]:
     vectors = [mcu.vector(f"TIMER0_{name}_vect") for name in ("OVF", "COMPA", "COMPB")]
     return {
-        **_TIMER0,
         **_common(8, _TIMER0_TIMSK, dict(zip((_TOV, _OCFA, _OCFB), vectors, strict=True))),
-        "OCRC": 0,
-        "ICR": 0,
-        "TCCRC": 0,
-        "captureInterrupt": 0,
+        **_TIMER0,
+        **_NO_16_BIT_REGISTERS,
+        "dividers": _dividers(Timer16.prescalers),  # it shares theirs
+        "recorded": False,  # it is the core's
+    }
+
+
+def _timer8(timer: Timer8, mcu: Mcu) -> dict[str, Any]:
+    vectors = {_TOV: timer.ovf, _OCFA: timer.compa, _OCFB: timer.compb}
+    return {
+        **_common(8, timer.timsk.address, vectors),
+        **_registers_and_outputs(timer, mcu),
+        **_NO_16_BIT_REGISTERS,
     }
 
 
@@ -69,24 +82,40 @@ def _timer16(timer: Timer16, mcu: Mcu) -> dict[str, Any]:
     vectors = {_TOV: timer.ovf, _OCFA: timer.compa, _OCFB: timer.compb}
     if timer.compc:
         vectors[_OCFC] = timer.compc
+    return {
+        **_common(16, timer.timsk.address, vectors),
+        **_registers_and_outputs(timer, mcu),
+        "TCCRC": timer.tccrc.address,
+        "ICR": timer.icr.address,
+        "OCRC": timer.ocrc.address if timer.ocrc else 0,
+        "captureInterrupt": _address(timer.capt),
+    }
+
+
+def _registers_and_outputs(timer: Timer, mcu: Mcu) -> dict[str, Any]:
     outputs: dict[str, int] = {}
     for channel, bit in timer.outputs:
         outputs[f"compPort{channel}"] = mcu.port(bit.port).port.address
         outputs[f"compPin{channel}"] = bit.bit
     return {
-        **_common(16, timer.timsk.address, vectors),
         "TIFR": timer.tifr.address,
         "TCCRA": timer.tccra.address,
         "TCCRB": timer.tccrb.address,
-        "TCCRC": timer.tccrc.address,
         "TCNT": timer.tcnt.address,
-        "ICR": timer.icr.address,
         "OCRA": timer.ocra.address,
         "OCRB": timer.ocrb.address,
-        "OCRC": timer.ocrc.address if timer.ocrc else 0,
-        "captureInterrupt": _address(timer.capt),
+        "dividers": _dividers(timer.prescalers),
+        "recorded": True,
         **outputs,
     }
+
+
+def _dividers(prescalers: Sequence[int]) -> dict[int, int]:
+    """
+    Return what each clock select divides by; 0 where the timer stands still.
+    """
+    taps = dict(enumerate(prescalers, start=1))
+    return {select: taps.get(select, 0) for select in _CLOCK_SELECTS}
 
 
 def _common(bits: int, timsk: int, vectors: dict[int, Vector]) -> dict[str, Any]:
@@ -95,7 +124,6 @@ def _common(bits: int, timsk: int, vectors: dict[int, Vector]) -> dict[str, Any]
     return {
         "bits": bits,
         "TIMSK": timsk,
-        "dividers": _DIVIDERS,
         "externalClockPort": 0,
         "externalClockPin": 0,
         **{f"compPort{channel}": 0 for channel in "ABC"},

@@ -8,7 +8,8 @@
 
 const { CPU, AVRIOPort, AVRTimer, AVRUSART, avrInstruction } = require(process.argv[2]);
 const {
-  accessCycles, accessInTime, clearOnlyWrittenFlags, letPrescalerRun, raiseEdge,
+  accessCycles, accessInTime, clearOnlyWrittenFlags, compareWhenLeft, countOnToMax, letPrescalerRun,
+  raiseEdge,
 } = require("./timers.js");
 
 const KIND = {
@@ -104,6 +105,8 @@ class Machine {
       letPrescalerRun(this.cpu, timer);
       accessInTime(this.cpu, timer);
       clearOnlyWrittenFlags(this.cpu, timer);
+      countOnToMax(timer);
+      compareWhenLeft(this.cpu, timer);
     }
     return timer;
   }
@@ -120,10 +123,10 @@ class Machine {
     const { cpu } = this;
     const timer = this.timerOf.get(interrupt);
     const vector = interrupt.address / WORDS_PER_VECTOR;
-    const edge = timer ? raiseEdge(interrupt, timer) : cpu.cycles;
+    const edge = timer ? raiseEdge(interrupt, timer, this.correct) : cpu.cycles;
     const already = cpu.data[interrupt.flagRegister] & interrupt.flagMask ? 1 : 0;
     if (!already) this.raisedAt[vector] = edge;
-    if (timer && timer.config.bits === 16 && cpu.data[interrupt.enableRegister] & interrupt.enableMask) {
+    if (timer && timer.config.recorded && cpu.data[interrupt.enableRegister] & interrupt.enableMask) {
       this.record(KIND.RAISE, edge, vector, already);
     }
   }

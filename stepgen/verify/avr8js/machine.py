@@ -5,8 +5,6 @@ One simulated chip that runs one program in avr8js.
 import base64
 from collections.abc import Iterable
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 
@@ -14,13 +12,13 @@ from stepgen.devices import boards
 from stepgen.errors import StepgenError
 from stepgen.verify.avr8js.config import describe
 from stepgen.verify.avr8js.node import Driver
-from stepgen.verify.elf import read_firmware
 from stepgen.verify.events import EVENT, Events
+from stepgen.verify.loaded import Loaded
 
 _NO_MARK = -1
 
 
-class Machine:
+class Machine(Loaded):
     """
     An ATmega328P or ATmega2560 with a program in its flash, just out of reset.
 
@@ -49,9 +47,7 @@ class Machine:
         chip = next((board.mcu for board in boards() if board.mcu.name == mcu), None)
         if chip is None:
             raise StepgenError.of("no board has this chip", text=mcu)
-        firmware = read_firmware(elf)
-        self._elf = elf
-        self._symbols = firmware.symbols
+        super().__init__(elf)
         self._fine = False
         self._ports = {port.pin.address: port.port.address for port in chip.ports}
         self.cycle = 0
@@ -60,22 +56,11 @@ class Machine:
             "open",
             **describe(chip),
             f_cpu_hz=f_cpu_hz,
-            image=base64.b64encode(firmware.image).decode(),
-            image_bytes=len(firmware.image),
+            image=base64.b64encode(self._image).decode(),
+            image_bytes=len(self._image),
             watch=list(watch),
             correct=correct,
         )
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def __del__(self) -> None:
         self.close()
@@ -144,14 +129,6 @@ class Machine:
         Return what an I/O register (data address) holds now; reading disturbs nothing.
         """
         return int(self._driver.ask("register", address=address)["value"])
-
-    def symbol(self, name: str) -> int:
-        """
-        Return the data address of a variable, or the byte address in flash of a function.
-        """
-        if name not in self._symbols:
-            raise StepgenError.of("no such symbol", place=str(self._elf), text=name)
-        return self._symbols[name]
 
     def send_serial(self, data: bytes) -> None:
         """

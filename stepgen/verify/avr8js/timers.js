@@ -56,17 +56,57 @@ function clearOnlyWrittenFlags(cpu, { config: { TIFR } }) {
   };
 }
 
+// Beyond TOP the counter goes on to MAX; avr8js takes it back at once.
+function countOnToMax(timer) {
+  const { get } = Object.getOwnPropertyDescriptor(Object.getPrototypeOf(timer), "TOP");
+  Object.defineProperty(timer, "TOP", {
+    get() {
+      const top = get.call(this);
+      return this.tcnt > top ? this.MAX : top;
+    },
+  });
+}
+
+// Ticks from *count* until it comes again.
+function lapFrom(count, { TOP, MAX }) {
+  return (count > TOP ? MAX : TOP) + 1;
+}
+
+// A compare unit acts at the tick that leaves OCRnx, where avr8js acts at the one that gets there;
+// and not at the first tick after a write to TCNTn.
+function compareWhenLeft(cpu, timer) {
+  const { TCNT } = timer.config;
+  const write = cpu.writeHooks[TCNT];
+  let blocked = false;
+  cpu.writeHooks[TCNT] = (...access) => {
+    const done = write(...access);
+    blocked = true;
+    return done;
+  };
+  const compare = timer.timerUpdated.bind(timer);
+  timer.timerUpdated = (now, before) => {
+    if (now === before) return;  // no tick: avr8js asks at a write to TCNTn, too
+    const oneLess = (count) => (count || lapFrom(before, timer)) - 1;
+    compare(oneLess(now), blocked ? before : oneLess(before));
+    blocked = false;
+  };
+}
+
 // The edge at which a flag that is being set came, from what the timer has counted since.
-function raiseEdge(interrupt, timer) {
-  const { divider, lastCycle, tcnt, TOP } = timer;
-  const at = {
+function raiseEdge(interrupt, timer, correct) {
+  const { divider, lastCycle, tcnt } = timer;
+  const match = {
     [timer.OCFA.flagMask]: timer.ocrA,
     [timer.OCFB.flagMask]: timer.ocrB,
     [timer.OCFC.flagMask]: timer.ocrC,
-    [timer.OVF.flagMask]: 0,
-  };
-  const ticks = (tcnt - at[interrupt.flagMask] + TOP + 1) % (TOP + 1);
-  return lastCycle - ticks * divider;
+  }[interrupt.flagMask];
+  const count = match ?? 0;
+  const left = correct && match !== undefined ? 1 : 0;
+  const lap = lapFrom(count, timer);
+  return lastCycle - ((tcnt - count - left + lap) % lap) * divider;
 }
 
-module.exports = { accessCycles, accessInTime, clearOnlyWrittenFlags, letPrescalerRun, raiseEdge };
+module.exports = {
+  accessCycles, accessInTime, clearOnlyWrittenFlags, compareWhenLeft, countOnToMax, letPrescalerRun,
+  raiseEdge,
+};

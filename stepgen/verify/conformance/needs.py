@@ -31,7 +31,7 @@ OF_TIMING: Mapping[str, Sequence[str]] = {
         # Without these a slow step, or one too many at a start, would not be seen.
         *("double-buffer", "slow-step", "count-kept", "late-compare-shows"),
     ),
-    "compare": ("timer2-compare", "flag-write"),
+    "compare": ("timer2-compare", "timer2-moves", "flag-write"),
 }
 OF_KERNEL: Mapping[str, Sequence[str]] = {
     "toggle": ("pin-writes", "pin-writes-1280", "pin-writes-2560"),

@@ -209,6 +209,19 @@ def timer2_compare(lab: Lab) -> Iterator[str]:
         yield from lab.differ("matches", expected, seen)
 
 
+@point("timer2-moves", "Timer 2: OCR2A += n is exact; missed, it comes a lap later", "18.5, 18.7.1")
+def timer2_moves(lab: Lab) -> Iterator[str]:
+    """
+    See matches 150 ticks of /8 apart; one whose OCR2A comes 200 ticks late waits for the wrap.
+    """
+    moves = {"MATCH": 149, "NOPS": 0, "STEP": 150, "SLOW_AT": 4, "SLOW": 200 * 8}
+    with lab.running("timer2", watch=(), CLOCK=2, **moves) as machine:
+        machine.run_until(12_000)
+        seen = gaps(cycles(machine, Kind.RAISE, TIMER2_COMPA))[:5]
+        expected = [150 * 8, 150 * 8, 150 * 8, (256 + 150) * 8, 150 * 8]
+        yield from lab.differ("cycles between matches", expected, seen)
+
+
 def _four_timers(lab: Lab) -> Iterator[str]:
     """
     Each with its vector (table 14-1, numbers less one) and its period.

@@ -25,6 +25,7 @@ typedef struct {
 enum run_result { RUN_REACHED = 0, RUN_MARKED = 1, RUN_FAILED = 2 };
 
 typedef struct machine machine;
+struct avr_t; /* simavr's own */
 
 machine *machine_new(const char *mcu, uint32_t f_cpu_hz, const uint8_t *code, uint32_t size);
 void machine_free(machine *m);
@@ -35,6 +36,7 @@ int machine_run(machine *m, uint64_t until, int wanted_mark);
 uint64_t machine_cycle(const machine *m);
 uint32_t machine_pc(const machine *m);
 void machine_set_fine(machine *m, int on);
+void machine_set_recording(machine *m, int on);
 
 uint32_t machine_ram_end(const machine *m);
 uint8_t *machine_data(machine *m);
@@ -51,3 +53,8 @@ event *events_map(machine *m);
 void events_unmap(event *region);
 uint64_t events_count(const machine *m);
 void events_clear(machine *m);
+
+struct avr_t *plain_new(const char *mcu, uint32_t f_cpu_hz, const uint8_t *code, uint32_t size);
+void plain_free(struct avr_t *avr);
+void plain_run(struct avr_t *avr, uint64_t until);
+uint8_t *plain_data(struct avr_t *avr);

@@ -35,6 +35,8 @@ void machine_fail(machine *m, const char *format, ...)
 
 event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source, uint32_t value)
 {
+    if (m->silent)
+        return NULL;
     event *e = recorder_add(&m->recorder, kind, cycle, source, value);
     if (!e)
         machine_fail(m, "too many events: call clear_events() now and then");
@@ -188,6 +190,11 @@ void machine_set_fine(machine *m, int on)
     m->fine = on;
 }
 
+void machine_set_recording(machine *m, int on)
+{
+    m->silent = !on;
+}
+
 uint32_t machine_ram_end(const machine *m)
 {
     return m->avr->ramend;
@@ -205,7 +212,7 @@ uint8_t machine_register(machine *m, uint16_t address)
         READ_SREG_INTO(avr, avr->data[ADDRESS_SREG]);
     slot *s = address >= 32 && address < MAX_IOs + 32 ? &m->slots[AVR_DATA_TO_IO(address)] : NULL;
     if (s && s->role == ROLE_TIMER)
-        return timer16_peek(s->timer, address, avr->cycle);
+        return timer_peek(s->timer, address, avr->cycle);
     if (s && s->role == ROLE_PIN) {
         uint8_t out = avr->data[address + 1];
         return (uint8_t)((avr->data[address] & ~out) | (avr->data[address + 2] & out));

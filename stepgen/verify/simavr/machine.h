@@ -9,7 +9,7 @@
 #include "harness.h"
 #include "mcus.h"
 #include "recorder.h"
-#include "timer16.h"
+#include "timer.h"
 
 enum { MAX_VECTORS = 64, MAX_DEPTH = 64, MAX_ERROR = 400 };
 
@@ -20,7 +20,7 @@ typedef enum {
     ROLE_DDR,
     ROLE_PORT,
     ROLE_FLAGS,  /* writing ones clears; sbi clears its one bit */
-    ROLE_TIMER,  /* a register of a timer16 */
+    ROLE_TIMER,  /* a register of a timer */
     ROLE_SPL,
     ROLE_SPH,
     ROLE_MARK,
@@ -35,7 +35,7 @@ typedef struct {
     role role;
     uint8_t watched;   /* record writes */
     uint8_t enables;   /* holds interrupt enable bits */
-    timer16 *timer;
+    timer *timer;
     avr_io_write_t write;  /* simavr's own handlers, or NULL */
     void *write_param;
 } slot;
@@ -52,7 +52,7 @@ struct machine {
     const mcu_facts *facts;
     recorder recorder;
     slot slots[MAX_IOs];
-    timer16 timers[MOST_TIMERS];
+    timer timers[MOST_TIMERS];
 
     avr_int_vector_t *vectors[MAX_VECTORS];  /* by priority */
     uint8_t vector_count;
@@ -75,10 +75,11 @@ struct machine {
 
     int stop, wanted_mark, marked;
     int fine, was_enabled;
+    int silent; /* record nothing */
     char error[MAX_ERROR];
 };
 
-/* Record an event; a full recorder fails the machine. */
+/* Record an event; a full recorder fails the machine. NULL if it fails or is silent. */
 event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source, uint32_t value);
 
 /* Stop the run with an error, once: the first one counts. */

@@ -4,14 +4,13 @@ One simulated chip that runs one program.
 
 from collections.abc import Iterable
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
 from stepgen.errors import StepgenError
-from stepgen.verify.elf import read_firmware
 from stepgen.verify.events import EVENT, Events
+from stepgen.verify.loaded import Loaded
 from stepgen.verify.simavr import build
 
 _NO_MARK = -1
@@ -19,7 +18,7 @@ _FIRST_RAM_ADDRESS = 0x100
 _VECTORS = 64
 
 
-class Machine:
+class Machine(Loaded):
     """
     An ATmega328P, ATmega1280 or ATmega2560 with a program in its flash, just out of reset.
 
@@ -37,11 +36,9 @@ class Machine:
         module = build.load()
         self._ffi: Any = module.ffi
         self._lib: Any = module.lib
-        firmware = read_firmware(elf)
-        self._symbols = firmware.symbols
+        super().__init__(elf)
         self._fine = False
-        self._elf = elf
-        image = firmware.image
+        image = self._image
         self._machine: Any = self._lib.machine_new(mcu.encode(), f_cpu_hz, image, len(image))
         if not self._machine:
             raise StepgenError.of(
@@ -57,17 +54,6 @@ class Machine:
         for address in watch:
             if not self._lib.machine_watch(self._machine, address):
                 raise StepgenError.of("only I/O registers can be watched", text=f"{address:#x}")
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def __del__(self) -> None:
         self.close()
@@ -105,6 +91,12 @@ class Machine:
     def fine(self, on: bool) -> None:
         self._fine = on
         self._lib.machine_set_fine(self._open, on)
+
+    def record(self, *, on: bool) -> None:
+        """
+        Record events, as from the start, or none: a benchmark wants to know what that costs.
+        """
+        self._lib.machine_set_recording(self._open, on)
 
     def run_until(self, cycle: int) -> None:
         """
@@ -160,14 +152,6 @@ class Machine:
         if not 0 <= address <= self._lib.machine_ram_end(self._open):
             raise StepgenError.of("not in the data space", text=f"{address:#x}")
         return int(self._lib.machine_register(self._machine, address))
-
-    def symbol(self, name: str) -> int:
-        """
-        Return the data address of a variable, or the byte address in flash of a function.
-        """
-        if name not in self._symbols:
-            raise StepgenError.of("no such symbol", place=str(self._elf), text=name)
-        return self._symbols[name]
 
     def send_serial(self, data: bytes) -> None:
         """

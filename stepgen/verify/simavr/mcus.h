@@ -19,14 +19,14 @@ typedef struct {
     uint8_t is_small;           /* 8 bits wide, with fewer registers */
     uint8_t restart;            /* the bit of GTCCR that restarts its prescaler */
     uint16_t prescaler[PRESCALERS]; /* by clock select; 0: stopped, or not simulated */
-} timer16_facts;
+} timer_facts;
 
 typedef struct {
     const char *name;
     const char *ports;          /* letters */
     uint16_t pin_address[12];   /* PINx by letter; DDRx and PORTx are the next two addresses */
     uint8_t timer_count;
-    timer16_facts timers[MOST_TIMERS];
+    timer_facts timers[MOST_TIMERS];
 } mcu_facts;
 
 /* The same address on each of them. */

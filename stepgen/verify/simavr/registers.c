@@ -94,7 +94,7 @@ static void write_prescaler(machine *m, uint8_t value)
     uint64_t edge = registers_write_edge(m->avr);
     for (unsigned i = 0; i < m->facts->timer_count; i++)
         if (value & m->timers[i].facts->restart)
-            timer16_restart(&m->timers[i], edge);
+            timer_restart(&m->timers[i], edge);
 }
 
 static void act(slot *s, uint16_t address, uint8_t value)
@@ -114,7 +114,7 @@ static void act(slot *s, uint16_t address, uint8_t value)
     case ROLE_TIMER:
         if (address == s->timer->facts->tifr)
             value = strobes(m->avr, value);
-        timer16_write(s->timer, address, value, registers_write_edge(m->avr));
+        timer_write(s->timer, address, value, registers_write_edge(m->avr));
         break;
     case ROLE_SPL:
     case ROLE_SPH:
@@ -156,7 +156,7 @@ static void on_write(avr_t *avr, avr_io_addr_t address, uint8_t value, void *par
 static uint8_t on_timer_read(avr_t *avr, avr_io_addr_t address, void *param)
 {
     slot *s = param;
-    return timer16_read(s->timer, address, registers_read_edge(avr));
+    return timer_read(s->timer, address, registers_read_edge(avr));
 }
 
 /* Put our hook before simavr's, once. */
@@ -181,10 +181,10 @@ static slot *take(machine *m, uint16_t address, role as)
     return s;
 }
 
-static void take_timer(machine *m, timer16 *t)
+static void take_timer(machine *m, timer *t)
 {
     for (uint16_t address = 32; address < MAX_IOs + 32; address++) {
-        if (!timer16_owns(t, address))
+        if (!timer_owns(t, address))
             continue;
         slot *s = take(m, address, ROLE_TIMER);
         s->timer = t;
@@ -212,7 +212,7 @@ void registers_install(machine *m)
     take(m, ADDRESS_EEDR, ROLE_MARK);
     take(m, ADDRESS_GTCCR, ROLE_PRESCALER);
     for (unsigned i = 0; i < facts->timer_count; i++) {
-        timer16_install(&m->timers[i], m, &facts->timers[i]);
+        timer_install(&m->timers[i], m, &facts->timers[i]);
         take_timer(m, &m->timers[i]);
     }
     for (unsigned i = 0; i < m->vector_count; i++) {

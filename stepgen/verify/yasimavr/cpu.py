@@ -20,7 +20,7 @@ NO_MARK = -1
 _WAKE_CYCLES = 4
 _INTERRUPTS_ON = 0x80
 _IO_OFFSET = 0x20
-_TIMER_REGISTERS = 14  # TCCRnA to OCRnC, or to what would be it
+_TIMER_REGISTERS = {1: 5, 2: 14}  # by bytes of the counter: TCCRnA to OCRnB, or to OCRnC
 _LONG_MASK, _LONG = 0xFC0F, 0x9000  # lds and sts
 _IN_SREG_MASK, _IN_SREG = 0xFE0F, 0xB60F  # in Rd, SREG
 # Cycles into an instruction at which it reaches the register.
@@ -63,12 +63,12 @@ class Cpu:
         self._elf, self._image, self._correct = elf, image, correct
         self._effects = classify(image)
         self._strobes = {port.pin.address for port in chip.ports} | {
-            timer.tifr.address for timer in chip.timers16
+            timer.tifr.address for timer in chip.timers
         }
         self._timer_registers = {
             timer.tccra.address + offset
-            for timer in chip.timers16
-            for offset in range(_TIMER_REGISTERS)
+            for timer in chip.timers
+            for offset in range(_TIMER_REGISTERS[timer.counter_bytes])
         }
         self.cycle = 0
         self.fine = False

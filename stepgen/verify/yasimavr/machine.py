@@ -4,18 +4,17 @@ One simulated ATmega328P that runs one program in yasimavr.
 
 from collections.abc import Iterable
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 from stepgen.devices import boards
 from stepgen.errors import StepgenError
-from stepgen.verify.elf import read_firmware
 from stepgen.verify.events import Events
+from stepgen.verify.loaded import Loaded
 from stepgen.verify.yasimavr import library
 from stepgen.verify.yasimavr.cpu import Cpu
 
 
-class Machine:
+class Machine(Loaded):
     """
     An ATmega328P with a program in its flash, just out of reset.
 
@@ -45,30 +44,19 @@ class Machine:
         chip = next((board.mcu for board in boards() if board.mcu.name == mcu), None)
         if chip is None or mcu not in devices.model_list():
             raise StepgenError.of("yasimavr has no such chip", text=mcu)
-        firmware = read_firmware(elf)
-        self._chip, self._elf, self._symbols = chip, elf, firmware.symbols
+        super().__init__(elf)
+        self._chip = chip
         self._device: Any = devices.load_device(mcu)
         self._cpu = Cpu(
             self._core,
             self._device,
             chip,
             elf=elf,
-            image=firmware.image,
+            image=self._image,
             f_cpu_hz=f_cpu_hz,
             watched=set(watch),
             correct=correct,
         )
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """
@@ -129,14 +117,6 @@ class Machine:
         Return what an I/O register (data address) holds now; reading disturbs nothing.
         """
         return self._cpu.register(address)
-
-    def symbol(self, name: str) -> int:
-        """
-        Return the data address of a variable, or the byte address in flash of a function.
-        """
-        if name not in self._symbols:
-            raise StepgenError.of("no such symbol", place=str(self._elf), text=name)
-        return self._symbols[name]
 
     def send_serial(self, data: bytes) -> None:
         """

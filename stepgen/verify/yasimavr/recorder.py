@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from stepgen.devices import Mcu
+from stepgen.devices import Mcu, Timer, Timer16, Vector
 from stepgen.verify.events import EVENT, Events, Kind
 
 _EEDR, _UDR0 = 0x40, 0xC6
@@ -50,9 +50,7 @@ class Recorder:
         self.taken: int | None = None
         self._frames: list[tuple[int, int]] = []
         self._timer_vectors = {
-            vector.number
-            for timer in chip.timers16
-            for vector in (timer.ovf, timer.compa, timer.compb, timer.capt)
+            vector.number for timer in chip.timers for vector in _vectors(timer).values()
         }
         self._held: dict[int, int] = {}
         self._hooks: list[Any] = []
@@ -65,9 +63,8 @@ class Recorder:
             handlers[port.pin.address] = partial(self._on_port, output)
             handlers[output] = partial(self._on_port, output)
             handlers[port.ddr.address] = partial(self._on_port, port.ddr.address)
-        for timer in chip.timers16:
-            vectors = {0: timer.ovf, 1: timer.compa, 2: timer.compb, 5: timer.capt}
-            numbers = {bit: vector.number for bit, vector in vectors.items() if vector}
+        for timer in chip.timers:
+            numbers = {bit: vector.number for bit, vector in _vectors(timer).items()}
             handlers[timer.timsk.address] = partial(self._on_enables, numbers)
         for address in self._watched:
             handlers.setdefault(address, _ignore)
@@ -177,6 +174,14 @@ class Recorder:
         Return everything that was recorded since `clear`.
         """
         return np.array(self._rows, dtype=EVENT)
+
+
+def _vectors(timer: Timer) -> dict[int, Vector]:
+    """
+    Return the vectors of *timer* by their bits in TIMSKn.
+    """
+    vectors = {0: timer.ovf, 1: timer.compa, 2: timer.compb}
+    return vectors | {5: timer.capt} if isinstance(timer, Timer16) else vectors
 
 
 def _ignore(*_: int) -> None:

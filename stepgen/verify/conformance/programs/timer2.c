@@ -1,13 +1,25 @@
-/* Timer 2 in normal mode that interrupts once a lap: CLOCK are its CS bits, MATCH its OCR2A, NOPS
- * shifts the start, RESTART is written to GTCCR 1000 cycles later. */
+/* Timer 2 in normal mode: CLOCK are its CS bits, MATCH its OCR2A, to which each interrupt adds STEP
+ * (0: one interrupt a lap), at number SLOW_AT SLOW cycles late. NOPS shifts the start, RESTART is
+ * written to GTCCR 1000 cycles later. */
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
 #ifndef RESTART
 #define RESTART 0
 #endif
+#ifndef STEP
+#define STEP 0
+#define SLOW_AT 0
+#define SLOW 0
+#endif
 
-EMPTY_INTERRUPT(TIMER2_COMPA_vect)
+volatile uint16_t runs;
+
+ISR(TIMER2_COMPA_vect)
+{
+  if (++runs == SLOW_AT) __builtin_avr_delay_cycles(SLOW);
+  OCR2A += STEP;
+}
 
 int main(void)
 {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "machine.h"
-#include "timer16.h"
+#include "timer.h"
 
 /* Offsets from TCCRnA; OCRnx follow each other, high bytes are odd. */
 enum { TCCRA = 0, TCCRB = 1, TCNTL = 4, TCNTH = 5, ICRL = 6, ICRH = 7, OCRAL = 8, LAST = 13 };
@@ -12,14 +12,14 @@ enum { TCCRA = 0, TCCRB = 1, TCNTL = 4, TCNTH = 5, ICRL = 6, ICRH = 7, OCRAL = 8
 /* The same of timer 2, whose registers follow each other. */
 enum { SMALL_TCNT = 2, SMALL_OCRA = 3, SMALL_LAST = 4 };
 
-static void write_compare(timer16 *t, unsigned channel, uint16_t value)
+static void write_compare(timer *t, unsigned channel, uint16_t value)
 {
     t->buffer[channel] = value;
-    if (!timer16_is_buffered(t))
+    if (!timer_is_buffered(t))
         t->active[channel] = value;
 }
 
-static void write_enables(timer16 *t, uint8_t value, uint64_t edge)
+static void write_enables(timer *t, uint8_t value, uint64_t edge)
 {
     machine *m = t->owner;
     uint8_t fresh = (uint8_t)(value & ~m->avr->data[t->facts->timsk]);
@@ -30,7 +30,7 @@ static void write_enables(timer16 *t, uint8_t value, uint64_t edge)
     machine_attend(m);
 }
 
-static void write_small(timer16 *t, unsigned offset, uint8_t value)
+static void write_small(timer *t, unsigned offset, uint8_t value)
 {
     if (offset >= SMALL_OCRA) {
         write_compare(t, offset - SMALL_OCRA, value);
@@ -40,7 +40,7 @@ static void write_small(timer16 *t, unsigned offset, uint8_t value)
     }
 }
 
-static void write_block(timer16 *t, unsigned offset, uint8_t value)
+static void write_block(timer *t, unsigned offset, uint8_t value)
 {
     uint16_t both = (uint16_t)(t->temp << 8 | value);
     if (offset == TCCRA) {
@@ -53,32 +53,32 @@ static void write_block(timer16 *t, unsigned offset, uint8_t value)
         t->count = both;
         t->blocked = 1;
     } else if (offset == ICRL) {
-        if (timer16_top_is_icr(t)) /* read-only in the other modes */
+        if (timer_top_is_icr(t)) /* read-only in the other modes */
             t->capture = both;
     } else if (offset >= OCRAL && !(offset & 1)) {
         write_compare(t, (offset - OCRAL) / 2, both);
     } else if (offset >= TCNTH) {
         t->temp = value;
     }
-    if (!timer16_turns(t))
+    if (!timer_turns(t))
         t->down = 0;
 }
 
-void timer16_write(timer16 *t, uint16_t address, uint8_t value, uint64_t edge)
+void timer_write(timer *t, uint16_t address, uint8_t value, uint64_t edge)
 {
-    timer16_sync(t, edge);
+    timer_sync(t, edge);
     if (address == t->facts->tifr)
         t->owner->avr->data[address] &= (uint8_t)~value;
     else if (address == t->facts->timsk)
         write_enables(t, value, edge);
     else
         write_block(t, address - t->facts->base, value);
-    timer16_schedule(t);
+    timer_schedule(t);
 }
 
-uint8_t timer16_peek(timer16 *t, uint16_t address, uint64_t edge)
+uint8_t timer_peek(timer *t, uint16_t address, uint64_t edge)
 {
-    timer16_sync(t, edge);
+    timer_sync(t, edge);
     if (address == t->facts->tifr || address == t->facts->timsk)
         return t->owner->avr->data[address];
     unsigned offset = address - t->facts->base, shift = offset & 1 ? 8 : 0;
@@ -100,28 +100,28 @@ uint8_t timer16_peek(timer16 *t, uint16_t address, uint64_t edge)
     }
 }
 
-uint8_t timer16_read(timer16 *t, uint16_t address, uint64_t edge)
+uint8_t timer_read(timer *t, uint16_t address, uint64_t edge)
 {
     unsigned offset = address - t->facts->base;
     if (t->facts->is_small)
-        return timer16_peek(t, address, edge);
+        return timer_peek(t, address, edge);
     int latched = address >= t->facts->base && (offset == TCNTH || offset == ICRH);
-    uint8_t value = latched ? t->temp : timer16_peek(t, address, edge);
+    uint8_t value = latched ? t->temp : timer_peek(t, address, edge);
     if (offset == TCNTL || offset == ICRL)
-        t->temp = timer16_peek(t, (uint16_t)(address + 1), edge);
+        t->temp = timer_peek(t, (uint16_t)(address + 1), edge);
     return value;
 }
 
-int timer16_owns(const timer16 *t, uint16_t address)
+int timer_owns(const timer *t, uint16_t address)
 {
-    const timer16_facts *f = t->facts;
+    const timer_facts *f = t->facts;
     return address == f->timsk || address == f->tifr ||
            (address >= f->base && address <= f->base + (f->is_small ? SMALL_LAST : LAST));
 }
 
-void timer16_install(timer16 *t, machine *owner, const timer16_facts *facts)
+void timer_install(timer *t, machine *owner, const timer_facts *facts)
 {
-    *t = (timer16){.owner = owner, .facts = facts};
+    *t = (timer){.owner = owner, .facts = facts};
     if (facts->is_small)
         return;
     for (avr_io_t *io = owner->avr->io_port; io; io = io->next) {

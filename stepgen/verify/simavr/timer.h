@@ -31,8 +31,8 @@
  * Left out: compare outputs (OCnx pins, FOCnx), input capture, external clocks, ASSR, PRR. Phase
  * correct modes count as they should, but set TOVn when leaving BOTTOM. */
 
-#ifndef STEPGEN_TIMER16_H
-#define STEPGEN_TIMER16_H
+#ifndef STEPGEN_TIMER_H
+#define STEPGEN_TIMER_H
 
 #include <stdint.h>
 
@@ -42,7 +42,7 @@ struct machine;
 
 typedef struct {
     struct machine *owner;
-    const timer16_facts *facts;
+    const timer_facts *facts;
     uint8_t control_a, control_b;
     uint8_t temp;         /* the one TEMP byte of the timer */
     uint8_t down;         /* counting down (phase correct modes) */
@@ -53,33 +53,33 @@ typedef struct {
     uint16_t buffer[3];   /* what the CPU wrote last */
     uint64_t synced;
     uint64_t prescaler_origin; /* its prescaler was zero at this edge */
-} timer16;
+} timer;
 
 /* Take the registers of *t* over from simavr. */
-void timer16_install(timer16 *t, struct machine *owner, const timer16_facts *facts);
+void timer_install(timer *t, struct machine *owner, const timer_facts *facts);
 
 /* Let the counter run up to and including the tick at *edge*, if there is one. */
-void timer16_sync(timer16 *t, uint64_t edge);
+void timer_sync(timer *t, uint64_t edge);
 
 /* Its prescaler begins anew at *edge*. */
-void timer16_restart(timer16 *t, uint64_t edge);
+void timer_restart(timer *t, uint64_t edge);
 
 /* Tell simavr when the next interrupt may come; after each change. */
-void timer16_schedule(timer16 *t);
+void timer_schedule(timer *t);
 
 /* Its mode: ICRn is TOP; OCRnx are double buffered; it counts up and down. */
-int timer16_top_is_icr(const timer16 *t);
-int timer16_is_buffered(const timer16 *t);
-int timer16_turns(const timer16 *t);
+int timer_top_is_icr(const timer *t);
+int timer_is_buffered(const timer *t);
+int timer_turns(const timer *t);
 
 /* A write that takes effect at *edge*, a read during the cycle that starts at *edge*. */
-void timer16_write(timer16 *t, uint16_t address, uint8_t value, uint64_t edge);
-uint8_t timer16_read(timer16 *t, uint16_t address, uint64_t edge);
+void timer_write(timer *t, uint16_t address, uint8_t value, uint64_t edge);
+uint8_t timer_read(timer *t, uint16_t address, uint64_t edge);
 
 /* The same as a read, without the side effect on TEMP. */
-uint8_t timer16_peek(timer16 *t, uint16_t address, uint64_t edge);
+uint8_t timer_peek(timer *t, uint16_t address, uint64_t edge);
 
 /* Whether *address* is a register of *t*. */
-int timer16_owns(const timer16 *t, uint16_t address);
+int timer_owns(const timer *t, uint16_t address);
 
 #endif

@@ -1,4 +1,4 @@
-#include "timer16.h"
+#include "timer.h"
 
 #include <string.h>
 
@@ -28,39 +28,39 @@ static const mode SMALL_MODES[8] = {
     {NORMAL, FIXED, 0xFF}, {PHASE, BY_OCRA, 0},   {NORMAL, FIXED, 0xFF}, {FAST, BY_OCRA, 0},
 };
 
-static const mode *mode_of(const timer16 *t)
+static const mode *mode_of(const timer *t)
 {
     if (t->facts->is_small)
         return &SMALL_MODES[(t->control_b >> 1 & 0x04) | (t->control_a & 0x03)];
     return &MODES[(t->control_b >> 1 & 0x0C) | (t->control_a & 0x03)];
 }
 
-static uint32_t max_of(const timer16 *t)
+static uint32_t max_of(const timer *t)
 {
     return t->facts->is_small ? 0xFF : 0xFFFF;
 }
 
-int timer16_top_is_icr(const timer16 *t)
+int timer_top_is_icr(const timer *t)
 {
     return mode_of(t)->top == BY_ICR;
 }
 
-int timer16_is_buffered(const timer16 *t)
+int timer_is_buffered(const timer *t)
 {
     return mode_of(t)->kind >= FAST;
 }
 
-int timer16_turns(const timer16 *t)
+int timer_turns(const timer *t)
 {
     return mode_of(t)->kind >= PHASE;
 }
 
-static uint32_t prescaler_of(const timer16 *t)
+static uint32_t prescaler_of(const timer *t)
 {
     return t->facts->prescaler[t->control_b & 7];
 }
 
-static uint32_t top_of(const timer16 *t)
+static uint32_t top_of(const timer *t)
 {
     switch (mode_of(t)->top) {
     case BY_OCRA:
@@ -73,17 +73,17 @@ static uint32_t top_of(const timer16 *t)
 }
 
 /* The number of ticks at the edges 1 .. edge. */
-static uint64_t ticks_until(const timer16 *t, uint64_t edge, uint32_t prescaler)
+static uint64_t ticks_until(const timer *t, uint64_t edge, uint32_t prescaler)
 {
     return (edge - t->prescaler_origin) / prescaler;
 }
 
-static uint64_t first_tick_after(const timer16 *t, uint64_t edge, uint32_t prescaler)
+static uint64_t first_tick_after(const timer *t, uint64_t edge, uint32_t prescaler)
 {
     return t->prescaler_origin + (ticks_until(t, edge, prescaler) + 1) * prescaler;
 }
 
-static void set_flag(timer16 *t, unsigned bit, uint64_t edge)
+static void set_flag(timer *t, unsigned bit, uint64_t edge)
 {
     machine *m = t->owner;
     uint8_t *data = m->avr->data;
@@ -98,13 +98,13 @@ static void set_flag(timer16 *t, unsigned bit, uint64_t edge)
     }
 }
 
-static void load_buffers(timer16 *t)
+static void load_buffers(timer *t)
 {
     memcpy(t->active, t->buffer, sizeof t->active);
 }
 
 /* One tick of a mode that counts up only. */
-static void tick_up(timer16 *t, uint64_t edge, int at_top)
+static void tick_up(timer *t, uint64_t edge, int at_top)
 {
     const mode *m = mode_of(t);
     int fast = m->kind == FAST, at_max = t->count == max_of(t);
@@ -122,7 +122,7 @@ static void tick_up(timer16 *t, uint64_t edge, int at_top)
 }
 
 /* One tick of a mode that counts up to TOP and down to BOTTOM. */
-static void tick_both_ways(timer16 *t, uint64_t edge, int at_top)
+static void tick_both_ways(timer *t, uint64_t edge, int at_top)
 {
     const mode *m = mode_of(t);
     uint32_t top = top_of(t);
@@ -146,7 +146,7 @@ static void tick_both_ways(timer16 *t, uint64_t edge, int at_top)
     }
 }
 
-static void tick(timer16 *t, uint64_t edge)
+static void tick(timer *t, uint64_t edge)
 {
     const mode *m = mode_of(t);
     int at_top = t->count == top_of(t);
@@ -164,16 +164,16 @@ static void tick(timer16 *t, uint64_t edge)
         tick_up(t, edge, at_top);
 }
 
-void timer16_restart(timer16 *t, uint64_t edge)
+void timer_restart(timer *t, uint64_t edge)
 {
-    timer16_sync(t, edge);
+    timer_sync(t, edge);
     t->prescaler_origin = edge;
-    timer16_schedule(t);
+    timer_schedule(t);
 }
 
 /* Ticks that only count, before one that may set a flag, turn or wrap. Of the compare
  * units only those in *channels* are looked at. */
-static uint32_t quiet_ticks(const timer16 *t, unsigned channels)
+static uint32_t quiet_ticks(const timer *t, unsigned channels)
 {
     uint32_t count = t->count, top = top_of(t);
     uint32_t turn = t->down ? 0 : count <= top ? top : max_of(t);
@@ -192,7 +192,7 @@ static uint32_t quiet_ticks(const timer16 *t, unsigned channels)
 /* After two laps every flag that can be set is set and the buffers are loaded, so whole
  * laps change nothing: keeps long idle timers cheap. Not with enabled interrupts, whose
  * every RAISE is recorded; those are never far behind. */
-static uint64_t skip_laps(const timer16 *t, uint64_t ticks)
+static uint64_t skip_laps(const timer *t, uint64_t ticks)
 {
     if (t->owner->avr->data[t->facts->timsk])
         return 0;
@@ -201,7 +201,7 @@ static uint64_t skip_laps(const timer16 *t, uint64_t ticks)
     return ticks / lap * lap;
 }
 
-void timer16_sync(timer16 *t, uint64_t edge)
+void timer_sync(timer *t, uint64_t edge)
 {
     uint32_t prescaler = prescaler_of(t);
     if (edge <= t->synced)
@@ -235,7 +235,7 @@ void timer16_sync(timer16 *t, uint64_t edge)
 }
 
 /* The edge of the next tick that may raise an enabled interrupt, or 0. */
-static uint64_t next_event(const timer16 *t)
+static uint64_t next_event(const timer *t)
 {
     uint32_t prescaler = prescaler_of(t);
     unsigned enabled = t->owner->avr->data[t->facts->timsk];
@@ -248,11 +248,11 @@ static uint64_t next_event(const timer16 *t)
 static avr_cycle_count_t on_event(avr_t *avr, avr_cycle_count_t when, void *param)
 {
     (void)avr;
-    timer16_sync(param, when);
+    timer_sync(param, when);
     return next_event(param);
 }
 
-void timer16_schedule(timer16 *t)
+void timer_schedule(timer *t)
 {
     avr_t *avr = t->owner->avr;
     uint64_t edge = next_event(t);

@@ -1,0 +1,3 @@
+"""
+How fast things are on this machine; no figure of it is a test.
+"""

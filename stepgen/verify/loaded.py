@@ -1,0 +1,55 @@
+"""
+What every simulated machine has of its program, whichever simulator runs it.
+"""
+
+from abc import ABC, abstractmethod
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from stepgen.errors import StepgenError
+from stepgen.verify.elf import read_firmware
+
+
+class Loaded(ABC):
+    """
+    A program with its symbols, in something that is closed where a ``with`` ends.
+
+    Args:
+        elf: The program, as avr-gcc links it.
+
+    Raises:
+        StepgenError: It is no program.
+    """
+
+    def __init__(self, elf: Path) -> None:
+        firmware = read_firmware(elf)
+        self._elf, self._image, self._symbols = elf, firmware.image, firmware.symbols
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @abstractmethod
+    def close(self) -> None:
+        """
+        Free what is held; more than once does no harm.
+        """
+
+    def symbol(self, name: str) -> int:
+        """
+        Return the data address of a variable, or the byte address in flash of a function.
+
+        Raises:
+            StepgenError: The program has no such symbol.
+        """
+        if name not in self._symbols:
+            raise StepgenError.of("no such symbol", place=str(self._elf), text=name)
+        return self._symbols[name]
