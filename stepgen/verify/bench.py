@@ -13,9 +13,14 @@ from stepgen.plan.model import Plan
 from stepgen.verify.events import Events
 from stepgen.verify.simulators import SIMAVR, Simulator
 
-_MAILBOX = Struct("<BBBBIIIHHbBi")
+_MAILBOX = Struct("<BBBBIIIHHHbBi")
+_DELAY = Struct("<H")
 _LOOP_OFFSET = 2
-_MARK_BEGIN, _MARK_END, _MARK_READY = 1, 2, 3
+_DELAY_OFFSET = 20
+_NO_CALL = 12  # the sketch goes through all of a call, but calls nothing
+_MARK_BEGIN, _MARK_END, _MARK_READY, _MARK_MET = 1, 2, 3, 4
+# So long before its moment an exact call is handed over: more than the sketch's loop takes.
+APPROACH_CYCLES = 400
 _SETUP_CYCLES = 2_000_000
 _ANSWER_CYCLES = 1_000_000
 
@@ -23,11 +28,16 @@ _ANSWER_CYCLES = 1_000_000
 class Loop(IntEnum):
     """
     What the sketch does between calls.
+
+    With EXACT it only looks for the next call, and a wait is exact: a call begins to the clock so
+    many cycles after the one before has ended, `APPROACH_CYCLES` or more, unless an interrupt
+    is running then.
     """
 
     SLEEP = 0
     BUSY = 1
     HOSTILE = 2
+    EXACT = 3
 
 
 class CallKind(IntEnum):
@@ -100,6 +110,9 @@ class Bench:
             watch=watched_registers(self.plan),
         )
         self._mailbox = self.machine.symbol("mailbox")
+        self._loop = Loop.SLEEP
+        self._lead_cycles = 0
+        self._due_cycle = 0
         if not self.machine.run_until_mark(_MARK_READY, limit_cycles=_SETUP_CYCLES):
             raise StepgenError.of("the sketch never came out of setup()", place=str(self.elf))
 
@@ -113,13 +126,22 @@ class Bench:
         """
         Choose what the sketch does between calls.
         """
+        self._loop = loop
         self.machine.write_ram(self._mailbox + _LOOP_OFFSET, bytes([loop]))
+        if loop is Loop.EXACT:
+            # The shortest of three, since a millisecond interrupt may come in between.
+            self._lead_cycles = min(self._measure_lead() for _ in range(3))
+            self._due_cycle = self.machine.cycle
 
     def wait(self, cycles: int) -> None:
         """
         Let the chip run for *cycles* more.
         """
-        self.machine.run_until(self.machine.cycle + cycles)
+        if self._loop is Loop.EXACT:
+            self._due_cycle += cycles
+            self.machine.run_until(self._due_cycle - APPROACH_CYCLES)
+        else:
+            self.machine.run_until(self.machine.cycle + cycles)
 
     def call(self, call: Call) -> Answer:
         """
@@ -128,9 +150,10 @@ class Bench:
         Raises:
             StepgenError: The sketch did not get round to it, or did not return.
         """
-        loop = self.machine.read_ram(self._mailbox + _LOOP_OFFSET, 1)[0]
-        message = _MAILBOX.pack(*_arguments(call, loop), 0, 0, 0)
-        self.machine.write_ram(self._mailbox, message)
+        self._send(_arguments(call, self._loop))
+        if self._loop is Loop.EXACT:
+            now = self._run_to_mark(_MARK_MET, call)
+            self._delay(self._due_cycle - now - self._lead_cycles)
         begin = self._run_to_mark(_MARK_BEGIN, call)
         self.machine.fine = True
         end = self._run_to_mark(_MARK_END, call)
@@ -141,6 +164,7 @@ class Bench:
         )
         answer = Answer(call, begin, end, result, status, position)
         self.answers.append(answer)
+        self._due_cycle = end
         return answer
 
     def events(self) -> Events:
@@ -148,6 +172,28 @@ class Bench:
         Return everything that was recorded since reset.
         """
         return self.machine.events()
+
+    def _send(self, arguments: tuple[int, ...]) -> None:
+        self.machine.write_ram(self._mailbox, _MAILBOX.pack(*arguments, 0, 0, 0, 0))
+
+    def _delay(self, cycles: int) -> None:
+        """
+        Let the sketch, which has met an exact call, put it off by *cycles*.
+        """
+        in_range = min(max(cycles, 0), 0xFFFF)
+        self.machine.write_ram(self._mailbox + _DELAY_OFFSET, _DELAY.pack(in_range))
+
+    def _measure_lead(self) -> int:
+        """
+        Return how long an exact call takes at least from when the sketch meets it to its begin.
+        """
+        call = Call(CallKind.READ)
+        self._send((_NO_CALL, *_arguments(call, self._loop)[1:]))
+        met = self._run_to_mark(_MARK_MET, call)
+        begin = self._run_to_mark(_MARK_BEGIN, call)
+        self._run_to_mark(_MARK_END, call)
+        self._run_until_free(call)
+        return begin - met
 
     def _run_to_mark(self, mark: int, call: Call) -> int:
         if not self.machine.run_until_mark(mark, limit_cycles=_ANSWER_CYCLES):
