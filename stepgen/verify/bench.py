@@ -122,6 +122,13 @@ class Bench:
     def __exit__(self, *_: object) -> None:
         self.machine.close()
 
+    @property
+    def due_cycle(self) -> int:
+        """
+        Return from when on the next exact wait counts: where the last call or wait ended.
+        """
+        return self._due_cycle
+
     def set_loop(self, loop: Loop) -> None:
         """
         Choose what the sketch does between calls.

@@ -3,7 +3,7 @@ The oracle: the reference model, fed with what happened on the chip.
 """
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -22,6 +22,7 @@ from stepgen.reference.stimuli import (
     Stimulus,
     UpdateCheck,
 )
+from stepgen.reference.timer import TimerSetting
 from stepgen.verify.bench import Answer, CallKind
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run, Trace
@@ -43,6 +44,7 @@ class Comparison:
         longest_isr_cycles: The longest run of its step interrupt.
         isr_cycles: All runs together.
         needs: When the motor needs current, as the model says.
+        intervals: The interval after each step, by the step's deadline, as the model says.
     """
 
     motor: str
@@ -52,6 +54,7 @@ class Comparison:
     longest_isr_cycles: int = 0
     isr_cycles: int = 0
     needs: tuple[Need, ...] = ()
+    intervals: Mapping[int, TimerSetting] = field(default_factory=dict)
 
     def report(self, finding: str) -> None:
         """
@@ -147,6 +150,13 @@ class Oracle:
                     self._compare_position(cycle, answer, result)
         self._advance(self._scene.until_cycle)
         return self._edges
+
+    @property
+    def intervals(self) -> Mapping[int, TimerSetting]:
+        """
+        Return the interval after each step, by the step's deadline, as far as the model has come.
+        """
+        return self._model.intervals
 
     @property
     def needs(self) -> tuple[Need, ...]:
