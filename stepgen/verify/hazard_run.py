@@ -2,6 +2,7 @@
 Running trials of hazards one after the other on one simulated chip, and judging them.
 """
 
+from bisect import bisect_left
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +13,7 @@ from stepgen.plan.model import Plan
 from stepgen.spec import LoadedSpec
 from stepgen.verify.bench import APPROACH_CYCLES, Answer, Bench, Call, CallKind, Loop
 from stepgen.verify.events import Events, Kind
-from stepgen.verify.hazards import Command, Trial, Way
+from stepgen.verify.hazards import Trial, Way
 from stepgen.verify.runner import Outcome, judge
 from stepgen.verify.scenarios import Action, Scenario, Wait
 from stepgen.verify.simulators import SIMAVR, Simulator
@@ -20,33 +21,49 @@ from stepgen.verify.subject import Subject, subjects
 from stepgen.verify.trace import Run
 
 _RECENT_EVENTS = 200
+_TICK_CYCLES = 64 * 256  # timer 0 of the Arduino core
 _NEAR_CYCLES = 100  # update events of the interrupt may move the step a little
 
 
 @dataclass(frozen=True)
-class Meeting:
+class Met:
     """
-    A trial as it happened: the call, and the cycle at which the step was due.
+    A trial that was made.
+
+    Args:
+        trial: What was to be done.
+        offset: The offset that was reached: what the interrupt of the step itself took is taken
+            off, since the call may begin later only because that interrupt came first.
+        cycles: How long the calls of the command took, from the first one's begin.
     """
 
     trial: Trial
-    answer: Answer
+    offset: int
+    cycles: int
+
+
+@dataclass(frozen=True)
+class _Meeting:
+    """
+    A trial as it happened: its calls, and the cycle at which the step was due.
+    """
+
+    trial: Trial
+    answers: Sequence[Answer]
     deadline_cycle: int
 
-    def offset(self, runs: Sequence[Run]) -> int:
+    def judged(self, runs: Sequence[Run], raised: Sequence[int]) -> Met:
         """
-        Return the offset that was reached, from the *runs* of the step interrupt.
-
-        What the interrupt itself took is taken off: the call may begin after it only because the
-        interrupt came first.
+        Return what was reached, from the *runs* of the step interrupt and when each was *raised*.
         """
-        near = [run for run in runs if abs(run.raised - self.deadline_cycle) <= _NEAR_CYCLES]
-        begin = self.answer.begin_cycle
-        if not near:
-            return begin - self.deadline_cycle
-        # The bench sees the begin of a call that is interrupted at once within the response.
-        taken = max(0, min(near[0].left, begin) - near[0].entered)
-        return begin - near[0].raised - taken
+        begin = self.answers[0].begin_cycle
+        offset = begin - self.deadline_cycle
+        place = bisect_left(raised, self.deadline_cycle - _NEAR_CYCLES)
+        if place < len(raised) and raised[place] <= self.deadline_cycle + _NEAR_CYCLES:
+            run = runs[place]
+            # The bench sees a call that is interrupted as it begins within the response.
+            offset = begin - run.raised - max(0, min(run.left, begin) - run.entered)
+        return Met(self.trial, offset, self.answers[-1].end_cycle - begin)
 
 
 @dataclass
@@ -59,7 +76,7 @@ class HazardRun:
     subject: Subject
     index: int
     actions: list[Action] = field(default_factory=list)
-    meetings: list[Meeting] = field(default_factory=list)
+    meetings: list[_Meeting] = field(default_factory=list)
 
     def run(self, trial: Trial) -> None:
         """
@@ -67,9 +84,8 @@ class HazardRun:
         """
         deadline = self._start(trial.way)
         self._wait_until(deadline + trial.offset)
-        answers = [self._do(action) for action in trial.command.actions]
-        first = next(answer for answer in answers if answer)
-        self.meetings.append(Meeting(trial, first, deadline))
+        answers = [answer for action in trial.command.actions if (answer := self._do(action))]
+        self.meetings.append(_Meeting(trial, answers, deadline))
         self._wait(trial.settle_cycles + max(0, deadline - self.bench.due_cycle))
         self._do(Call(CallKind.READ, self.index))
         self._wait(APPROACH_CYCLES)
@@ -82,6 +98,9 @@ class HazardRun:
         """
         Start the motor; return when the step is due that the command is to meet.
         """
+        if way.after_tick_cycles is not None:
+            self._wait(_TICK_CYCLES + APPROACH_CYCLES)  # so that there was one
+            self._wait_until(self._next_tick() + way.after_tick_cycles)
         self._do(way.start)
         period = self.subject.facts.setting(way.start.top).period_cycles
         self._wait(period + period // 2 + APPROACH_CYCLES)
@@ -91,17 +110,29 @@ class HazardRun:
             self._do(way.again)
         return deadline
 
+    def _next_tick(self) -> int:
+        """
+        Return when ``millis()`` goes on next, as far ahead as a call must be prepared.
+        """
+        vector = self.bench.plan.board.mcu.vector("TIMER0_OVF_vect").number
+        last = _raised(self._recent(), vector)
+        ahead = self.bench.due_cycle + APPROACH_CYCLES - last
+        return last + -(-ahead // _TICK_CYCLES) * _TICK_CYCLES
+
     def _last_step(self) -> int:
         """
         Return when the interrupt was raised that last wrote to the motor's wires.
         """
-        recent: Events = self.bench.events()[-_RECENT_EVENTS:]
-        letters = {f"{port.letter}": port.port.address for port in self.bench.plan.board.mcu.ports}
-        own = [letters[letter] for letter in self.subject.masks]
+        recent = self._recent()
+        ports = {port.letter: port.port.address for port in self.bench.plan.board.mcu.ports}
+        own = [ports[letter] for letter in self.subject.masks]
         writes = (recent["kind"] == Kind.PORT) & np.isin(recent["source"], own)
         last = int(np.flatnonzero(writes)[-1])
-        entered = (recent["kind"] == Kind.ISR_ENTER) & (recent["source"] == self.subject.vector)
-        return int(recent["since"][np.flatnonzero(entered[:last])[-1]])
+        return _raised(recent[:last], self.subject.vector)
+
+    def _recent(self) -> Events:
+        recent: Events = self.bench.events()[-_RECENT_EVENTS:]
+        return recent
 
     def _do(self, action: Action) -> Answer | None:
         if isinstance(action, Wait):
@@ -111,21 +142,33 @@ class HazardRun:
         return self.bench.call(action)
 
     def _wait(self, cycles: int) -> None:
-        self.actions.append(Wait(cycles))
+        before = self.actions[-1] if self.actions else None
+        if isinstance(before, Wait):
+            self.actions[-1] = Wait(before.cycles + cycles)
+        else:
+            self.actions.append(Wait(cycles))
         self.bench.wait(cycles)
 
     def _wait_until(self, cycle: int) -> None:
         self._wait(max(0, cycle - self.bench.due_cycle))
 
 
+def _raised(events: Events, vector: int) -> int:
+    """
+    Return when the last run of the interrupt *vector* in *events* was raised.
+    """
+    entered = (events["kind"] == Kind.ISR_ENTER) & (events["source"] == vector)
+    return int(events["since"][np.flatnonzero(entered)[-1]])
+
+
 @dataclass(frozen=True)
 class HazardOutcome:
     """
-    How a row of trials went: as a scenario, and which offsets they reached.
+    How a row of trials went: as the outcome of a scenario, and trial by trial.
     """
 
     outcome: Outcome
-    reached: tuple[tuple[Trial, int], ...]
+    met: tuple[Met, ...]
 
 
 def run_hazards(
@@ -133,6 +176,8 @@ def run_hazards(
     plan: Plan,
     elf: Path,
     trials: Iterable[tuple[int, Trial]],
+    *,
+    name: str = "hazards",
     simulator: Simulator = SIMAVR,
 ) -> HazardOutcome:
     """
@@ -148,19 +193,10 @@ def run_hazards(
         runs = [HazardRun(bench, subject, i, actions) for i, subject in enumerate(every)]
         for index, trial in trials:
             runs[index].run(trial)
-        outcome = judge(bench, loaded, Scenario("hazards", Loop.EXACT, tuple(actions)))
-    reached = []
+        outcome = judge(bench, loaded, Scenario(name, Loop.EXACT, tuple(actions)))
+    met: list[Met] = []
     for run in runs:
         seen = outcome.trace.runs(run.subject.vector)
-        reached += [(meeting.trial, meeting.offset(seen)) for meeting in run.meetings]
-    return HazardOutcome(outcome, tuple(reached))
-
-
-def call_cycles(plan: Plan, elf: Path, command: Command, simulator: Simulator = SIMAVR) -> int:
-    """
-    Return how long the calls of *command* take from the first one's begin, from rest.
-    """
-    with Bench(plan, elf, simulator) as bench:
-        bench.set_loop(Loop.EXACT)
-        answers = [bench.call(action) for action in command.actions if isinstance(action, Call)]
-    return sum(answer.end_cycle - answer.begin_cycle for answer in answers)
+        raised = [one.raised for one in seen]
+        met += [meeting.judged(seen, raised) for meeting in run.meetings]
+    return HazardOutcome(outcome, tuple(met))

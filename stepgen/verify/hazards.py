@@ -38,6 +38,7 @@ class Way:
         meets: Which step of it the command meets, from 2 on.
         again: A call half a period before that step, if there is one.
         settle_cycles: How long it takes from that step until what it did shows.
+        after_tick_cycles: How long after ``millis()`` went on the motor starts, if that matters.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Way:
     meets: int = 4
     again: Call | None = None
     settle_cycles: int = 0
+    after_tick_cycles: int | None = None
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,8 @@ def _ways(plan: Plan, index: int) -> Iterator[Way]:
     yield Way("a change of direction", start(), 4, start(_DRIVE | Control.DIRECTION))
     yield Way("a change of prescaler", start(), 4, start(top=_LONG_PERIOD), _LATER)
     yield Way("a step before a millisecond limit", start(millis, limit=60_000))
-    yield Way("the end of a millisecond limit", start(millis, limit=1))
+    # millis() goes on 16384 clocks after it last did, which is before the fourth step.
+    yield Way("the end of a millisecond limit", start(millis, limit=1), after_tick_cycles=1_000)
     yield Way("a step with the next prescaler", start(top=_LONG_PERIOD), 2, None, _LATER)
     if _has_events(motor):
         by_isr = _EVENTS | Control.IRQ_TIMING

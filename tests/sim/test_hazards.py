@@ -1,0 +1,135 @@
+"""
+Commands at every clock of a step interrupt and of a period: no step lost or extra, none slow.
+
+Each trial starts a motor, lets a command meet a step of it at an offset that is exact to a clock,
+and reads the position; the whole is compared with the model. The campaign makes every trial that
+there is, `make test` a sample with a stored seed for each kind of spec.
+"""
+
+from collections.abc import Callable, Iterable
+from functools import cache
+from random import Random
+
+import pytest
+
+from stepgen import api
+from stepgen.verify.hazard_run import Met, run_hazards
+from stepgen.verify.hazards import AFTER_CYCLES, Command, Trial, Way, commands, offsets, ways
+from tests.sim.kinds import KINDS
+from tests.sim.shrinking import ROOT, Library
+
+SEED = 20_260_401
+SAMPLE = 300
+BATCH = 300  # trials on one chip, one after the other
+MOST_ROUNDS = 10
+_CALM_CYCLES = 900  # a call that begins so long before the step is over when it is due
+_LONGEST_CALL_CYCLES = 700
+
+library_of = cache(Library.of)
+PLANS = {stem: api.plan(ROOT / "specs" / f"{stem}.yaml") for stem in KINDS}
+EVERY_WAY = [
+    pytest.param(stem, index, number, id=f"{stem}-{motor.name}-{way.name}")
+    for stem, plan in PLANS.items()
+    for index, motor in enumerate(plan.motors)
+    for number, way in enumerate(ways(plan, index))
+]
+
+
+def run(library: Library, index: int, name: str, trials: Iterable[Trial]) -> list[Met]:
+    """
+    Make all *trials* with motor number *index*; fail with the smallest scenario that differs.
+    """
+    waiting, met = list(trials), list[Met]()
+    for start in range(0, len(waiting), BATCH):
+        batch = [(index, trial) for trial in waiting[start : start + BATCH]]
+        done = run_hazards(library.loaded, library.plan, library.elf, batch, name=name)
+        if done.outcome.findings:
+            pytest.fail(library.failure(done.outcome.scenario))
+        met += done.met
+    return met
+
+
+def call_cycles(library: Library, index: int, way: Way, command: Command) -> int:
+    """
+    Return how long the calls of *command* take where no interrupt comes in between.
+    """
+    calm = Trial(way, command, -_CALM_CYCLES)
+    return run(library, index, "calm", [calm])[0].cycles
+
+
+def cover(library: Library, index: int, way: Way, command: Command) -> tuple[int, range]:
+    """
+    Let *command* meet the step at each clock; return how many trials it took, and the clocks.
+
+    A trial in which another interrupt comes in between misses its offset, and is made again, with
+    others before it, so that the other interrupt comes elsewhere.
+    """
+    name = f"{way.name}, {command.name}"
+    longest = call_cycles(library, index, way, command)
+    window = range(-longest, AFTER_CYCLES)
+    period = way.start.top
+    made, wanted = 0, offsets(period, longest)
+    for others in range(MOST_ROUNDS):
+        row = (*window[:others], *wanted)
+        met = run(library, index, name, (Trial(way, command, offset) for offset in row))
+        made += len(met)
+        wanted = tuple(sorted({*wanted} & {*window} - {one.offset for one in met}))
+        if not wanted:
+            return made, window
+    pytest.fail(f"{name}: no call began at {wanted} clocks after the step was due")
+
+
+@pytest.mark.parametrize("stem", KINDS)
+def test_no_command_near_an_interrupt_loses_a_step(stem: str) -> None:
+    """
+    Three hundred commands of all kinds, on all ways of the interrupt, at offsets of a stored seed.
+    """
+    library, random = library_of(stem), Random(SEED)  # noqa: S311 - repeatable, not secret
+    for index in range(len(library.plan.motors)):
+        trials = [
+            Trial(
+                random.choice(ways(library.plan, index)),
+                random.choice(commands(library.plan, index)),
+                random.randrange(-_LONGEST_CALL_CYCLES, AFTER_CYCLES),
+            )
+            for _ in range(SAMPLE // len(library.plan.motors))
+        ]
+        run(library, index, f"seed {SEED}", trials)
+
+
+def test_a_command_meets_the_interrupt_at_every_clock() -> None:
+    """
+    The interrupt is raised at each clock of a call, and the call follows it at each phase.
+    """
+    library = library_of("uno_motor_shield")
+    way, faster = ways(library.plan, 0)[0], commands(library.plan, 0)[0]
+
+    made, window = cover(library, 0, way, faster)
+
+    # The call takes more than 400 clocks; each of them, those after the interrupt, and a sweep
+    # over the rest of the period took a trial at least.
+    assert window[0] < -400
+    assert window[-1] == AFTER_CYCLES - 1
+    assert made > len(window) + 20
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize(("stem", "index", "number"), EVERY_WAY)
+def test_a_campaign_of_every_command_at_every_clock(
+    stem: str, index: int, number: int, record_property: Callable[[str, object], None]
+) -> None:
+    """
+    Every command, at each clock of its calls and of what follows, and over the period.
+    """
+    library = library_of(stem)
+    way, every = ways(library.plan, index)[number], commands(library.plan, index)
+    trials = clocks = 0
+    for command in every:
+        made, window = cover(library, index, way, command)
+        trials, clocks = trials + made, clocks + len(window)
+    name = library.plan.motors[index].name
+    record_property(
+        "campaign",
+        f"{stem} {name}, {way.name}: {trials} trials; {len(every)} commands met it at each of "
+        f"{clocks} clocks",
+    )
