@@ -2,6 +2,7 @@
 The oracle: the reference model, fed with what happened on the chip.
 """
 
+import re
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -27,7 +28,8 @@ from stepgen.verify.bench import Answer, CallKind
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run, Trace
 
-_MOST_FINDINGS = 5
+_MOST_OF_A_KIND = 3
+_NUMBER = re.compile(r"\d+")
 WAKE_CYCLES = 4  # more, when the interrupt wakes the chip from idle sleep (datasheet)
 
 
@@ -58,9 +60,13 @@ class Comparison:
 
     def report(self, finding: str) -> None:
         """
-        Note that something differs; after a few, more of them would tell nothing new.
+        Note that something differs; after a few of a kind, more of them would tell nothing new.
+
+        Findings are of a kind if they differ in numbers only.
         """
-        if len(self.findings) < _MOST_FINDINGS:
+        kind = _NUMBER.sub("", finding)
+        alike = sum(_NUMBER.sub("", other) == kind for other in self.findings)
+        if alike < _MOST_OF_A_KIND:
             self.findings.append(finding)
 
 

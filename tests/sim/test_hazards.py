@@ -6,24 +6,21 @@ and reads the position; the whole is compared with the model. The campaign makes
 there is, `make test` a sample with a stored seed for each kind of spec.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache
-from random import Random
 
 import pytest
 
 from stepgen import api
-from stepgen.verify.hazard_run import Met, run_hazards
 from stepgen.verify.hazards import AFTER_CYCLES, Command, Trial, Way, commands, offsets, ways
+from tests.sim.hazard_trials import run, sample
 from tests.sim.kinds import KINDS
 from tests.sim.shrinking import ROOT, Library
 
 SEED = 20_260_401
 SAMPLE = 300
-BATCH = 300  # trials on one chip, one after the other
 MOST_ROUNDS = 10
 _CALM_CYCLES = 900  # a call that begins so long before the step is over when it is due
-_LONGEST_CALL_CYCLES = 700
 
 library_of = cache(Library.of)
 PLANS = {stem: api.plan(ROOT / "specs" / f"{stem}.yaml") for stem in KINDS}
@@ -33,20 +30,6 @@ EVERY_WAY = [
     for index, motor in enumerate(plan.motors)
     for number, way in enumerate(ways(plan, index))
 ]
-
-
-def run(library: Library, index: int, name: str, trials: Iterable[Trial]) -> list[Met]:
-    """
-    Make all *trials* with motor number *index*; fail with the smallest scenario that differs.
-    """
-    waiting, met = list(trials), list[Met]()
-    for start in range(0, len(waiting), BATCH):
-        batch = [(index, trial) for trial in waiting[start : start + BATCH]]
-        done = run_hazards(library.loaded, library.plan, library.elf, batch, name=name)
-        if done.outcome.findings:
-            pytest.fail(library.failure(done.outcome.scenario))
-        met += done.met
-    return met
 
 
 def call_cycles(library: Library, index: int, way: Way, command: Command) -> int:
@@ -84,16 +67,10 @@ def test_no_command_near_an_interrupt_loses_a_step(stem: str) -> None:
     """
     Three hundred commands of all kinds, on all ways of the interrupt, at offsets of a stored seed.
     """
-    library, random = library_of(stem), Random(SEED)  # noqa: S311 - repeatable, not secret
+    library = library_of(stem)
+
     for index in range(len(library.plan.motors)):
-        trials = [
-            Trial(
-                random.choice(ways(library.plan, index)),
-                random.choice(commands(library.plan, index)),
-                random.randrange(-_LONGEST_CALL_CYCLES, AFTER_CYCLES),
-            )
-            for _ in range(SAMPLE // len(library.plan.motors))
-        ]
+        trials = sample(library, index, SEED, SAMPLE // len(library.plan.motors))
         run(library, index, f"seed {SEED}", trials)
 
 
