@@ -24,7 +24,7 @@ _LONG_PERIOD = (
 _LATER = _LONG_PERIOD + _PERIOD
 _RUN_STEPS = 256  # the count of the interrupt starts anew with the first step, then each 255
 AFTER_CYCLES = 40  # the call begins up to so many clocks after the interrupt has returned
-_SWEEP_CYCLES = 97
+_SWEEP_TRIALS = 60
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,7 @@ class Way:
         again: A call half a period before that step, if there is one.
         settle_cycles: How long it takes from that step until what it did shows.
         after_tick_cycles: How long after ``millis()`` went on the motor starts, if that matters.
+        only: The names of the commands that meet it at each clock; all, unless that takes too long.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Way:
     again: Call | None = None
     settle_cycles: int = 0
     after_tick_cycles: int | None = None
+    only: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -92,16 +94,21 @@ def commands(plan: Plan, index: int) -> tuple[Command, ...]:
     return tuple(_commands(plan, index))
 
 
-def offsets(period_cycles: int, call_cycles: int) -> tuple[int, ...]:
+def window(way: Way, call_cycles: int) -> range:
     """
-    Return every clock from where the call is over to shortly after the interrupt, then a sweep.
+    Return the offset at each clock of a call, and of what follows the interrupt.
 
-    The sweep goes over the whole period before.
+    Of a call that is longer than the period only those clocks that come after the step before.
     """
-    window = range(-call_cycles, AFTER_CYCLES)
-    longest = min(period_cycles, 2 * _PERIOD) - APPROACH_CYCLES
-    sweep = range(-longest + call_cycles, -call_cycles, _SWEEP_CYCLES)
-    return (*window, *sweep)
+    return range(-min(call_cycles, way.start.top - APPROACH_CYCLES), AFTER_CYCLES)
+
+
+def sweep(way: Way, call_cycles: int) -> range:
+    """
+    Return offsets over the rest of the period; with another call in it, over what follows that.
+    """
+    longest = way.start.top // 2 - APPROACH_CYCLES if way.again else way.start.top
+    return range(-longest, -call_cycles, max(longest // _SWEEP_TRIALS, 1))
 
 
 def _ways(plan: Plan, index: int) -> Iterator[Way]:
@@ -112,7 +119,8 @@ def _ways(plan: Plan, index: int) -> Iterator[Way]:
 
     millis = _DRIVE | Control.ENDPOINT_MILLIS
     yield Way("the usual way", start())
-    yield Way("the way each 255 steps", start(top=_short(plan)), _RUN_STEPS)
+    few = frozenset({"faster", "next prescaler", "reverse", "limit of one step", "stop", "read"})
+    yield Way("the way each 255 steps", start(top=_short(plan)), _RUN_STEPS, only=few)
     yield Way("the last step", start(limit=4))
     if motor.releases_at_rest:
         yield Way("the release after the last step", start(limit=3))
