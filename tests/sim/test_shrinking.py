@@ -7,6 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 from random import Random
 
+import pytest
 from typer.testing import CliRunner
 
 from stepgen.cli import app
@@ -40,7 +41,9 @@ def test_only_what_is_needed_to_fail_is_left() -> None:
     assert shrink(Scenario("", Loop.BUSY, tuple(every)), fails).actions == (stop, hold)
 
 
-def test_a_planted_bug_becomes_a_short_file_that_replays(tmp_path: Path) -> None:
+def test_a_planted_bug_becomes_a_short_file_that_replays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """
     A period that ends while a call changes it: the file fails with the bug and passes without it.
 
@@ -67,6 +70,11 @@ def test_a_planted_bug_becomes_a_short_file_that_replays(tmp_path: Path) -> None
     assert "the step due at" in said
     assert replay.read_text() in said
     assert broken.fails(shrunk)
-    run = CliRunner().invoke(app, ["simulate", str(right.path), "--scenario", str(replay)])
-    assert run.exit_code == 0
-    assert "every edge as the model says" in run.output
+    command = ["simulate", str(right.path), "--scenario", str(replay)]
+    passing = CliRunner().invoke(app, command)
+    assert passing.exit_code == 0
+    assert "every edge as the model says" in passing.output
+    monkeypatch.setattr("stepgen.library.render.template_dir", lambda: templates)
+    failing = CliRunner().invoke(app, command)
+    assert failing.exit_code == 1
+    assert "differs from the model: motor: no step interrupt for the step due" in failing.output
