@@ -28,8 +28,10 @@ def simulate(
     """
     Compile the library, run one scenario on a simulated chip, and show each change of a pin.
 
-    Without a scenario each motor makes eight steps forward and eight back. Exit code 1 if the
-    pins differ from the reference model.
+    Without a scenario each motor makes eight steps forward and eight back. A scenario has a list
+    `steps` of calls and waits, such as {call: set_speed, control: [DRV_EN], top: 20000, limit: 4},
+    {wait_ms: 20}, {wait_clocks: 1234} and {call: read}; README.md has them all. Exit code 1 if
+    anything differs from the reference model; then it says what.
     """
     plan, outcome = api.simulate(spec, scenario, compiler=compiler)
     from stepgen.verify.simulation import call_rows, port_rows  # noqa: PLC0415 - needs numpy

@@ -5,6 +5,7 @@ Motions ``constant`` and ``update-events``, timings ``fast-pwm`` and ``compare``
 contract is the table of systems/1-motor-driver.md; the timer is in `stepgen.reference.timer`.
 """
 
+from collections.abc import Mapping
 from typing import assert_never
 
 from stepgen.reference.axis import Axis, wrapped_int32
@@ -27,6 +28,7 @@ from stepgen.reference.stimuli import (
     Stimulus,
     UpdateCheck,
 )
+from stepgen.reference.timer import TimerSetting
 from stepgen.reference.verdict import fault_bits, stops, verdict
 
 
@@ -138,6 +140,13 @@ class MotorModel:
         Return each change so far of whether the motor needs current; it begins without.
         """
         return tuple(self._axis.needs)
+
+    @property
+    def intervals(self) -> Mapping[int, TimerSetting]:
+        """
+        Return each interval so far that began with a step, by the deadline of that step.
+        """
+        return self._engine.pace.begun
 
     @property
     def callbacks(self) -> tuple[CallbackMade, ...]:

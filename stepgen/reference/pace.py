@@ -2,7 +2,7 @@
 When the step interrupt comes: the deadlines of the timer, and when each is served.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from stepgen.reference.facts import ServiceCycle
 from stepgen.reference.stimuli import ClockOn
@@ -18,11 +18,13 @@ class Pace:
         service_cycle: A pure function from a deadline to the cycle of its service.
         interval: Prescaler and period of the interval in progress, None at rest.
         deadline_cycle: When the timer sets the flag of a step next, None until its clock is on.
+        begun: Each interval so far that began with a step, by the deadline of that step.
     """
 
     service_cycle: ServiceCycle
     interval: TimerSetting | None = None
     deadline_cycle: int | None = None
+    begun: dict[int, TimerSetting] = field(default_factory=dict)
 
     def begin(self, interval: TimerSetting) -> None:
         """
@@ -41,6 +43,7 @@ class Pace:
         Go on from *deadline* with *interval*.
         """
         self.interval, self.deadline_cycle = interval, deadline + interval.period_cycles
+        self.begun[deadline] = interval
 
     def clock_on(self, clock: ClockOn) -> None:
         """

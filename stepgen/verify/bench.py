@@ -13,9 +13,14 @@ from stepgen.plan.model import Plan
 from stepgen.verify.events import Events
 from stepgen.verify.simulators import SIMAVR, Simulator
 
-_MAILBOX = Struct("<BBBBIIIHHbBiH")
+_MAILBOX = Struct("<BBBBIIIHHHbBiH")
+_DELAY = Struct("<H")
 _LOOP_OFFSET = 2
-_MARK_BEGIN, _MARK_END, _MARK_READY = 1, 2, 3
+_DELAY_OFFSET = 20
+_NO_CALL = 11  # the sketch goes through all of a call, but calls nothing
+_MARK_BEGIN, _MARK_END, _MARK_READY, _MARK_MET = 1, 2, 3, 4
+# So long before its moment an exact call is handed over: more than the sketch's loop takes.
+APPROACH_CYCLES = 400
 _SETUP_CYCLES = 2_000_000
 _ANSWER_CYCLES = 1_000_000
 
@@ -23,11 +28,16 @@ _ANSWER_CYCLES = 1_000_000
 class Loop(IntEnum):
     """
     What the sketch does between calls.
+
+    With EXACT it only looks for the next call, and a wait is exact: a call begins to the clock so
+    many cycles after the one before has ended, `APPROACH_CYCLES` or more, unless an interrupt
+    is running then.
     """
 
     SLEEP = 0
     BUSY = 1
     HOSTILE = 2
+    EXACT = 3
 
 
 class CallKind(IntEnum):
@@ -103,6 +113,11 @@ class Bench:
             watch=watched_registers(self.plan),
         )
         self._mailbox = self.machine.symbol("mailbox")
+        self._loop = Loop.SLEEP
+        self._lead_cycles = 0
+        self._due_cycle = 0
+        # With EXACT nothing depends on when it is noticed that a call is over.
+        self._patience_cycles = 1
         if not self.machine.run_until_mark(_MARK_READY, limit_cycles=_SETUP_CYCLES):
             raise StepgenError.of("the sketch never came out of setup()", place=str(self.elf))
 
@@ -112,17 +127,34 @@ class Bench:
     def __exit__(self, *_: object) -> None:
         self.machine.close()
 
+    @property
+    def due_cycle(self) -> int:
+        """
+        Return from when on the next exact wait counts: where the last call or wait ended.
+        """
+        return self._due_cycle
+
     def set_loop(self, loop: Loop) -> None:
         """
         Choose what the sketch does between calls.
         """
+        self._loop = loop
         self.machine.write_ram(self._mailbox + _LOOP_OFFSET, bytes([loop]))
+        if loop is Loop.EXACT:
+            self._patience_cycles = 20
+            # The shortest of three, since a millisecond interrupt may come in between.
+            self._lead_cycles = min(self._measure_lead() for _ in range(3))
+            self._due_cycle = self.machine.cycle
 
     def wait(self, cycles: int) -> None:
         """
         Let the chip run for *cycles* more.
         """
-        self.machine.run_until(self.machine.cycle + cycles)
+        if self._loop is Loop.EXACT:
+            self._due_cycle += cycles
+            self.machine.run_until(self._due_cycle - APPROACH_CYCLES)
+        else:
+            self.machine.run_until(self.machine.cycle + cycles)
 
     def call(self, call: Call) -> Answer:
         """
@@ -131,8 +163,10 @@ class Bench:
         Raises:
             StepgenError: The sketch did not get round to it, or did not return.
         """
-        loop = self.machine.read_ram(self._mailbox + _LOOP_OFFSET, 1)[0]
-        self.machine.write_ram(self._mailbox, mail(call, Loop(loop)))
+        self.machine.write_ram(self._mailbox, mail(call, self._loop))
+        if self._loop is Loop.EXACT:
+            now = self._run_to_mark(_MARK_MET, call)
+            self._delay(self._due_cycle - now - self._lead_cycles)
         begin = self._run_to_mark(_MARK_BEGIN, call)
         self.machine.fine = True
         end = self._run_to_mark(_MARK_END, call)
@@ -143,6 +177,7 @@ class Bench:
         )
         answer = Answer(call, begin, end, result, status, position, missed)
         self.answers.append(answer)
+        self._due_cycle = end
         return answer
 
     def events(self) -> Events:
@@ -150,6 +185,25 @@ class Bench:
         Return everything that was recorded since reset.
         """
         return self.machine.events()
+
+    def _delay(self, cycles: int) -> None:
+        """
+        Let the sketch, which has met an exact call, put it off by *cycles*.
+        """
+        in_range = min(max(cycles, 0), 0xFFFF)
+        self.machine.write_ram(self._mailbox + _DELAY_OFFSET, _DELAY.pack(in_range))
+
+    def _measure_lead(self) -> int:
+        """
+        Return how long an exact call takes at least from when the sketch meets it to its begin.
+        """
+        call = Call(CallKind.READ)
+        self.machine.write_ram(self._mailbox, bytes([_NO_CALL]) + mail(call, self._loop)[1:])
+        met = self._run_to_mark(_MARK_MET, call)
+        begin = self._run_to_mark(_MARK_BEGIN, call)
+        self._run_to_mark(_MARK_END, call)
+        self._run_until_free(call)
+        return begin - met
 
     def _run_to_mark(self, mark: int, call: Call) -> int:
         if not self.machine.run_until_mark(mark, limit_cycles=_ANSWER_CYCLES):
@@ -161,7 +215,7 @@ class Bench:
         while self.machine.read_ram(self._mailbox, 1)[0]:
             if self.machine.cycle > start + _ANSWER_CYCLES:
                 raise StepgenError.of(f"the sketch hangs after {call}", place=str(self.elf))
-            self.machine.run_until(self.machine.cycle + 1)
+            self.machine.run_until(self.machine.cycle + self._patience_cycles)
 
 
 def mail(call: Call, loop: Loop) -> bytes:
@@ -170,7 +224,7 @@ def mail(call: Call, loop: Loop) -> bytes:
     """
     update = (call.modification, call.interval, call.count)
     arguments = (call.kind, call.motor, loop, call.control, call.top, call.limit, *update)
-    return _MAILBOX.pack(*arguments, 0, 0, 0, 0)
+    return _MAILBOX.pack(*arguments, 0, 0, 0, 0, 0)
 
 
 def watched_registers(plan: Plan) -> list[int]:

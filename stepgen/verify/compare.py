@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from stepgen.plan.model import MotorPlan
 from stepgen.reference.stimuli import Edge, EdgeKind
+from stepgen.verify.edges import wrong_positions
 from stepgen.verify.electrical import Levels, is_between
 from stepgen.verify.oracle import WAKE_CYCLES, Comparison, Oracle, Scene
 from stepgen.verify.rules import broken_rules
@@ -25,14 +26,16 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     runs = scene.trace.runs(subject.vector)
     oracle = Oracle(subject, index, scene, runs)
     edges = oracle.predict(result)
-    result.needs = oracle.needs
+    result.needs, result.intervals = oracle.needs, oracle.intervals
     runs = oracle.served(runs)
     runs = within_tolerance(runs, edges, scene.tolerance_cycles)
     _compare_steps(subject, scene, runs, edges, result)
     _compare_calls(subject, scene, runs, edges, result)
     _compare_strangers(subject, scene, runs, result)
-    for broken in broken_rules(subject, index, scene, runs, edges):
+    for broken in broken_rules(subject, index, scene, runs, edges, result.intervals):
         result.report(broken)
+    for wrong in wrong_positions(subject, index, scene, runs):
+        result.report(wrong)
     motor = scene.plan.motors[index]
     for run in runs:
         _check_run(run, motor, scene, result)

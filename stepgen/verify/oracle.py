@@ -2,14 +2,16 @@
 The oracle: the reference model, fed with what happened on the chip.
 """
 
+import re
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from stepgen.plan.model import Plan
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sharing import Need
 from stepgen.reference.stimuli import Edge, MillisTick, Stimulus
+from stepgen.reference.timer import TimerSetting
 from stepgen.verify.bench import Answer
 from stepgen.verify.happenings import (
     MissedRead,
@@ -21,7 +23,8 @@ from stepgen.verify.happenings import (
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run, Trace
 
-_MOST_FINDINGS = 5
+_MOST_OF_A_KIND = 3
+_NUMBER = re.compile(r"\d+")
 WAKE_CYCLES = 4  # more, when the interrupt wakes the chip from idle sleep (datasheet)
 
 
@@ -38,6 +41,7 @@ class Comparison:
         longest_isr_cycles: The longest run of its step interrupt.
         isr_cycles: All runs together.
         needs: When the motor needs current, as the model says.
+        intervals: The interval after each step, by the step's deadline, as the model says.
     """
 
     motor: str
@@ -47,12 +51,17 @@ class Comparison:
     longest_isr_cycles: int = 0
     isr_cycles: int = 0
     needs: tuple[Need, ...] = ()
+    intervals: Mapping[int, TimerSetting] = field(default_factory=dict)
 
     def report(self, finding: str) -> None:
         """
-        Note that something differs; after a few, more of them would tell nothing new.
+        Note that something differs; after a few of a kind, more of them would tell nothing new.
+
+        Findings are of a kind if they differ in numbers only.
         """
-        if len(self.findings) < _MOST_FINDINGS:
+        kind = _NUMBER.sub("", finding)
+        alike = sum(_NUMBER.sub("", other) == kind for other in self.findings)
+        if alike < _MOST_OF_A_KIND:
             self.findings.append(finding)
 
 
@@ -106,6 +115,13 @@ class Oracle:
                     self._compare_missed(cycle, answer, result)
         self._advance(self._scene.until_cycle)
         return self._edges
+
+    @property
+    def intervals(self) -> Mapping[int, TimerSetting]:
+        """
+        Return the interval after each step, by the step's deadline, as far as the model has come.
+        """
+        return self._model.intervals
 
     @property
     def needs(self) -> tuple[Need, ...]:

@@ -5,7 +5,8 @@ The model takes the timer's next deadline from where the firmware set its counte
 firmware set it right is judged here, by the contract alone.
 """
 
-from collections.abc import Iterator, Sequence
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from stepgen.plan.model import MotorPlan
@@ -25,7 +26,12 @@ _NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS, CallKind.H
 
 
 def broken_rules(
-    subject: Subject, index: int, scene: Scene, runs: Sequence[Run], edges: Sequence[Edge]
+    subject: Subject,
+    index: int,
+    scene: Scene,
+    runs: Sequence[Run],
+    edges: Sequence[Edge],
+    intervals: Mapping[int, TimerSetting],
 ) -> Iterator[str]:
     """
     Yield each rule that motor number *index* broke, in words.
@@ -35,7 +41,7 @@ def broken_rules(
     steps = [edge for edge in edges if edge.kind is EdgeKind.STEP]
     calls = [answer for answer in answers if answer.call.kind not in _NO_CODE]
     starts = scene.trace.clock_starts(subject.timer)
-    yield from _wrong_changes(subject, runs, calls, steps, starts)
+    yield from _wrong_intervals(intervals, runs, steps, starts)
     yield from _wrong_starts(subject, scene, calls, steps)
     yield from _late_edges(scene.plan.motors[index], runs, calls, steps)
 
@@ -52,29 +58,27 @@ def _unmasked_calls(subject: Subject, scene: Scene, answers: Sequence[Answer]) -
             yield f"{answer.call} touches what the interrupt changes without masking it"
 
 
-def _wrong_changes(
-    subject: Subject,
+def _wrong_intervals(
+    intervals: Mapping[int, TimerSetting],
     runs: Sequence[Run],
-    calls: Sequence[Answer],
     steps: Sequence[Edge],
     starts: Sequence[ClockStart],
 ) -> Iterator[str]:
     """
-    After a change of speed the first new interval is right, within a tick and the lateness.
+    Each interval of a motion is right, within a tick and the lateness where the timer is set.
 
     The tick is that of the coarser of the two prescalers; the lateness is how late the step
     came at which the timer was set, since the interval is counted from that step.
     """
     by_deadline = {run.raised: run for run in runs}
-    for before, (first, second) in zip(steps, pairwise(steps[1:]), strict=False):
-        is_first_of_call = before.call_index != first.call_index == second.call_index
-        run = by_deadline.get(first.deadline_cycle)
-        if not is_first_of_call or run is None:
-            continue
-        old, new = _running_prescaler(starts, run.entered), _setting(subject, calls, first)
-        late = max(0, run.entered - run.raised)
-        allowed = max(old, new.prescaler) + late + _CALIBRATION_CYCLES
+    for first, second in pairwise(steps):
+        run, new = by_deadline.get(first.deadline_cycle), intervals[first.deadline_cycle]
         error = second.deadline_cycle - first.deadline_cycle - new.period_cycles
+        if run is None or not error or _is_started(starts, run.left, second.deadline_cycle):
+            continue
+        late = max(0, run.entered - run.raised)
+        old = _running_prescaler(starts, run.entered)
+        allowed = max(old, new.prescaler) + late + _CALIBRATION_CYCLES
         if abs(error) > allowed:
             yield (
                 f"the interval after the step due at cycle {first.deadline_cycle} is {error:+d} "
@@ -82,15 +86,23 @@ def _wrong_changes(
             )
 
 
+def _is_started(starts: Sequence[ClockStart], first: int, last: int) -> bool:
+    """
+    Tell whether the timer is started between two cycles: a call begins another motion.
+    """
+    place = bisect_right(starts, first, key=_cycle)
+    return place < len(starts) and starts[place].cycle < last
+
+
+def _cycle(start: ClockStart) -> int:
+    return start.cycle
+
+
 def _running_prescaler(starts: Sequence[ClockStart], cycle: int) -> int:
     """
     Return the prescaler with which the timer ran at *cycle*: that of its last start.
     """
-    return next(start.prescaler for start in reversed(starts) if start.cycle < cycle)
-
-
-def _setting(subject: Subject, calls: Sequence[Answer], edge: Edge) -> TimerSetting:
-    return subject.facts.setting(calls[edge.call_index].call.top)
+    return starts[bisect_left(starts, cycle, key=_cycle) - 1].prescaler
 
 
 def _wrong_starts(

@@ -72,21 +72,28 @@ def run_scenario(
                 bench.call(action)
             else:
                 bench.wait(action.cycles)
-        trace = Trace(bench.events(), plan.board.mcu)
-        answers = tuple(bench.answers)
-        cycle, tolerance = bench.machine.cycle, simulator.tolerance_cycles
-        scene = Scene(trace, answers, plan, cycle, tolerance)
-        motors = subjects(loaded, plan, elf)
-        comparisons = tuple(compare(motor, i, scene) for i, motor in enumerate(motors))
-        return Outcome(
-            scenario=scenario,
-            comparisons=comparisons,
-            shared_findings=tuple(compare_shared(motors, comparisons, scene)),
-            masked_cycles=_longest_mask(trace, answers),
-            stack_bytes=_stack_bytes(bench, [motor.vector for motor in motors]),
-            trace=trace,
-            answers=answers,
-        )
+        return judge(bench, loaded, scenario)
+
+
+def judge(bench: Bench, loaded: LoadedSpec, scenario: Scenario) -> Outcome:
+    """
+    Compare every motor with the model, now that *bench* has run *scenario* of *loaded*.
+    """
+    plan = bench.plan
+    trace = Trace(bench.events(), plan.board.mcu)
+    answers = tuple(bench.answers)
+    scene = Scene(trace, answers, plan, bench.machine.cycle, bench.simulator.tolerance_cycles)
+    motors = subjects(loaded, plan, bench.elf)
+    comparisons = tuple(compare(motor, i, scene) for i, motor in enumerate(motors))
+    return Outcome(
+        scenario=scenario,
+        comparisons=comparisons,
+        shared_findings=tuple(compare_shared(motors, comparisons, scene)),
+        masked_cycles=_longest_mask(trace, answers),
+        stack_bytes=_stack_bytes(bench, [motor.vector for motor in motors]),
+        trace=trace,
+        answers=answers,
+    )
 
 
 def is_asleep(scenario: Scenario) -> bool:

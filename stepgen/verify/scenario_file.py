@@ -1,86 +1,74 @@
 """
-A scenario that the user wrote: YAML, with the names of motors and of control bits.
+A scenario as a YAML file: with the names of motors and control bits, read and written.
+
+Whatever a scenario can hold can be written and is read back equal, so that a run that failed
+can be handed to ``stepgen simulate``.
 """
 
+from collections.abc import Iterator, Mapping
+from io import StringIO
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Any
 
-from pydantic import Field
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap
 
 from stepgen.errors import Fault, StepgenError
-from stepgen.plan.model import Plan
-from stepgen.reference.contract import Control
-from stepgen.spec.base import SpecModel
+from stepgen.plan.model import MotorPlan, Plan
+from stepgen.reference.contract import ALL_CONTROL_BITS, CONTROL_BITS, Control
 from stepgen.spec.load import load_model
 from stepgen.verify.bench import Call, CallKind, Loop
+from stepgen.verify.scenario_model import (
+    UPDATE_FIELDS,
+    CallStep,
+    ScenarioSpec,
+    WaitStep,
+    bits_of,
+    fields_of,
+)
 from stepgen.verify.scenarios import Action, Scenario, Wait
 
-_UINT32 = Field(ge=0, le=0xFFFF_FFFF)
-_LONGEST_WAIT_MS = 3_600_000
-_CALLS = {
-    "set_speed": CallKind.SET_SPEED,
-    "hold": CallKind.HOLD,
-    "release": CallKind.RELEASE,
-    "read": CallKind.READ,
-    "init": CallKind.INIT,
-}
-
-
-class CallStep(SpecModel):
-    """
-    ``{call: set_speed, control: [DRV_EN], top: 20000, limit: 10}``.
-    """
-
-    call: Literal["set_speed", "hold", "release", "read", "init"]
-    motor: str | None = None
-    control: Annotated[
-        tuple[Literal["DRV_EN", "ENDPOINT_MILLIS", "DIRECTION"], ...], Field(strict=False)
-    ] = ()
-    top: Annotated[int, _UINT32] = 0
-    limit: Annotated[int, _UINT32] = 0
-
-
-class WaitStep(SpecModel):
-    """
-    ``{wait_ms: 20}``.
-    """
-
-    wait_ms: Annotated[int | float, Field(gt=0, le=_LONGEST_WAIT_MS)]
-
-
-class ScenarioSpec(SpecModel):
-    """
-    What the sketch does between calls, and the steps in their order.
-    """
-
-    loop: Literal["sleep", "busy", "hostile"] = "sleep"
-    steps: Annotated[tuple[CallStep | WaitStep, ...], Field(min_length=1, strict=False)]
+_OF_UPDATE_EVENTS = {CallKind.UPDATE_CHECK, CallKind.CALLBACKS}
+_WAY_OUT = "give it `motion: update-events`, or leave this out"
 
 
 def load_scenario(path: Path, plan: Plan) -> Scenario:
     """
-    Return the scenario in *path* for the motors of *plan*.
+    Return the scenario in *path* for the motors of *plan*; without a name it has the file's.
 
     Raises:
         StepgenError: All faults of the file, each with its place.
     """
     document, spec = load_model(path, ScenarioSpec)
-    names = [motor.name for motor in plan.motors]
     faults = []
     actions: list[Action] = []
     for index, step in enumerate(spec.steps):
         if isinstance(step, WaitStep):
-            actions.append(Wait(round(step.wait_ms * plan.board.f_cpu_hz / 1000)))
-        elif step.motor is not None and step.motor not in names:
-            place, text = document.place(("steps", index, "motor"))
-            faults.append(Fault(place, text, f"is no motor of this spec; it has {names}"))
-        else:
-            motor = names.index(step.motor) if step.motor else 0
-            control = sum(int(Control[bit]) for bit in set(step.control))
-            actions.append(Call(_CALLS[step.call], motor, control, step.top, step.limit))
+            actions.append(step.action(plan.board.f_cpu_hz))
+            continue
+        found = list(_faults(step, plan))
+        for location, reason in found:
+            place, text = document.place(("steps", index, *location))
+            faults.append(Fault(place, text, reason))
+        if not found:
+            actions.append(_call(step, plan))
     if faults:
         raise StepgenError(faults)
-    return Scenario(path.stem, Loop[spec.loop.upper()], tuple(actions))
+    return Scenario(spec.name or path.stem, Loop[spec.loop.upper()], tuple(actions))
+
+
+def scenario_text(scenario: Scenario, plan: Plan) -> str:
+    """
+    Return *scenario* for the motors of *plan* as YAML, from which `load_scenario` makes it again.
+    """
+    steps = [_step(action, plan) for action in scenario.actions]
+    data = {"name": scenario.name, "loop": scenario.loop.name.lower(), "steps": steps}
+    yaml = YAML()
+    yaml.width = 1 << 16
+    yaml.indent(mapping=2, sequence=4, offset=2)
+    stream = StringIO()
+    yaml.dump(data, stream)
+    return stream.getvalue()
 
 
 def default_scenario(plan: Plan) -> Scenario:
@@ -96,3 +84,102 @@ def default_scenario(plan: Plan) -> Scenario:
             actions.append(Wait(11 * top))
         actions.append(Call(CallKind.READ, motor))
     return Scenario("eight steps there and back", Loop.SLEEP, tuple(actions))
+
+
+def _faults(step: CallStep, plan: Plan) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """
+    Yield where *step* asks for what its call or its motor does not have, and the way out.
+    """
+    fields, bits = fields_of(step.kind), bits_of(step.kind)
+    for field in sorted(step.model_fields_set - {"call", *fields}):
+        had = f"it has {', '.join(fields)}" if fields else "it has none"
+        yield (field,), f"{field} is no argument of {step.call}; {had}"
+    for index, bit in enumerate(step.bits):
+        if bit not in bits and "control" in fields:
+            ways = f"one of {', '.join(bits)}, or a number" if bits else "a number"
+            yield ("control", index), f"is no bit of {step.call}; write {ways}"
+    motors = {motor.name: motor for motor in plan.motors}
+    if step.motor is not None and step.motor not in motors:
+        yield ("motor",), f"is no motor of this spec; it has {', '.join(motors)}"
+    else:
+        motor = motors[step.motor] if step.motor is not None else plan.motors[0]
+        yield from _lacks(step, motor, bits)
+
+
+def _lacks(
+    step: CallStep, motor: MotorPlan, bits: Mapping[str, int]
+) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """
+    Yield what is there with update events only, if *motor* has none.
+    """
+    known = _control_bits(motor)
+    if known == ALL_CONTROL_BITS:
+        return
+    reason = f"the motor {motor.name} has no update events; {_WAY_OUT}"
+    if step.kind in _OF_UPDATE_EVENTS:
+        yield ("call",), reason
+    if step.kind is CallKind.SET_SPEED:
+        for index, bit in enumerate(step.bits):
+            if bits.get(bit, 0) & ~known:
+                yield (
+                    ("control", index),
+                    f"{reason}, or write control as a number to see it refused",
+                )
+        for field in UPDATE_FIELDS:
+            if field in step.model_fields_set:
+                yield (field,), reason
+
+
+def _call(step: CallStep, plan: Plan) -> Call:
+    names = [motor.name for motor in plan.motors]
+    return Call(
+        step.kind,
+        names.index(step.motor) if step.motor is not None else 0,
+        step.control_byte,
+        step.top,
+        step.limit,
+        step.modification,
+        step.interval,
+        step.count,
+    )
+
+
+def _step(action: Action, plan: Plan) -> CommentedMap:
+    """
+    Return *action* as one line of YAML; what is as it is by default is left out.
+    """
+    step = CommentedMap()
+    step.fa.set_flow_style()
+    if isinstance(action, Wait):
+        step["wait_clocks"] = action.cycles
+        return step
+    step["call"] = action.kind.name.lower()
+    for field in fields_of(action.kind):
+        value: Any = getattr(action, field)
+        if field == "motor":
+            value = plan.motors[action.motor].name if len(plan.motors) > 1 else None
+        elif field == "control":
+            value = _control(action, plan)
+        if value:
+            step[field] = value
+    return step
+
+
+def _control(call: Call, plan: Plan) -> int | list[str]:
+    """
+    Return the names of the bits of *call*, or the number if the library lacks one of them.
+    """
+    bits = bits_of(call.kind)
+    known = sum(bits.values())
+    if call.kind is CallKind.SET_SPEED:
+        known = _control_bits(plan.motors[call.motor])
+    if call.control & ~known:
+        return call.control
+    return [name for name, bit in bits.items() if call.control & bit]
+
+
+def _control_bits(motor: MotorPlan) -> int:
+    """
+    Return the control bits that the library of *motor* has.
+    """
+    return next(bits for kind, bits in CONTROL_BITS.items() if kind == motor.motion.kind)

@@ -81,6 +81,14 @@ class Trace:
         self._isr_exits = exits["cycle"].tolist()
         self._isr_entries = exits["since"].tolist()
         self._port_cycles = [state.cycle for state in self.ports]
+        # For each port from when on it holds what; 0 from reset.
+        self._held: dict[str, tuple[list[int], list[int]]] = {
+            port.letter: ([0], [0]) for port in self.mcu.ports
+        }
+        for state in self.ports:
+            cycles, values = self._held[state.port]
+            cycles.append(state.cycle)
+            values.append(state.value)
         self.masked = [int(row["cycle"]) for row in self._of(Kind.MASKED)]
         self.unmasked = [int(row["cycle"]) for row in self._of(Kind.UNMASKED)]
 
@@ -117,10 +125,10 @@ class Trace:
         """
         Return what all ports hold after everything up to and including *cycle*.
         """
-        held = {port.letter: 0 for port in self.mcu.ports}
-        for state in self.ports[: bisect_right(self._port_cycles, cycle)]:
-            held[state.port] = state.value
-        return held
+        return {
+            letter: values[bisect_right(cycles, cycle) - 1]
+            for letter, (cycles, values) in self._held.items()
+        }
 
     def clock_starts(self, timer: Timer) -> list[ClockStart]:
         """

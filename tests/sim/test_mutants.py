@@ -1,8 +1,9 @@
 """
-Verification can fail: each planted bug of the templates is caught.
+Verification can fail: each planted bug of the templates is caught, by the check that is for it.
 """
 
 import shutil
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,23 +18,52 @@ from stepgen.spec import load_spec
 from stepgen.verify.firmware import build_firmware
 from stepgen.verify.late_scenarios import late_scenarios
 from stepgen.verify.runner import run_scenario
+from stepgen.verify.scenarios import Scenario
 from stepgen.verify.toolchain import default_compiler
 from stepgen.verify.verification import verify_spec
+from tests.sim.hazard_trials import batches, sample
+from tests.sim.shrinking import Library
 
+# Not `stepgen verify`, but commands at random clocks near an interrupt: test_hazards.py.
+HAZARDS = "hazards"
+HAZARD_SEED = 20_260_601
 SPECS = Path(__file__).parents[2] / "specs"
 
 
 @dataclass(frozen=True)
 class Mutant:
     """
-    A bug: one text of one template replaced by another, and the spec that shows it.
+    A bug: one text of one template replaced by another, the spec that shows it, and what must.
+
+    Args:
+        name: What is wrong.
+        template: The file under ``templates/``.
+        old: What stands there.
+        new: What is planted instead.
+        check: The check of `stepgen verify` that must catch it, or HAZARDS.
+        finding: What that check must say among other things.
+        spec: The spec whose library has the bug.
     """
 
     name: str
     template: str
     old: str
     new: str
+    check: str
+    finding: str
     spec: str = "uno_motor_shield"
+
+    def plant(self, folder: Path) -> Path:
+        """
+        Return a copy of the templates in *folder*, with the bug.
+        """
+        templates = folder / "templates"
+        shutil.copytree(template_dir(), templates)
+        file = templates / self.template
+        text = file.read_text(encoding="utf-8")
+        assert self.old in text
+        file.write_text(text.replace(self.old, self.new), encoding="utf-8")
+        return templates
 
 
 MUTANTS = (
@@ -42,30 +72,40 @@ MUTANTS = (
         "timings/fast_pwm.j2",
         "static_cast<uint16_t>(period - 1)",
         "static_cast<uint16_t>(period)",
+        check="a step each 20000 clocks",
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "a limit that is off by one",
         "motions/constant.j2",
         "const uint32_t rest = limit - 1;",
         "const uint32_t rest = limit;",
+        check="single steps both ways",
+        finding="that nobody asked for",
     ),
     Mutant(
         "the bytes of OCR swapped",
         "timings/fast_pwm.j2",
         "{{ timer.ocra }} = next.top;",
         "{{ timer.ocra }} = __builtin_bswap16(next.top);",
+        check="a step each 20000 clocks",
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "a position that is read without cli",
         "macros/motion.j2",
         "  const Masked masked;\n  return static_cast<int32_t>(",
         "  return static_cast<int32_t>(",
+        check="single steps both ways",
+        finding="without masking it",
     ),
     Mutant(
         "a speed that is set without cli",
         "motions/constant.j2",
         "  const Masked masked;\n  const uint8_t before",
         "  const uint8_t before",
+        check="stop while running",
+        finding="without masking it",
     ),
     Mutant(
         "the pattern table reversed",
@@ -73,30 +113,65 @@ MUTANTS = (
         "for row in motor.kernel.rows",
         "for row in motor.kernel.rows | reverse",
         spec="uno_uln2003_wave",
+        check="single steps both ways",
+        finding="pattern 0100 at cycle",
     ),
     Mutant(
         "a direction that does not turn round",
         "kernels/toggle.j2",
         "{{ motor.state }} ^= {{ motor.kernel.both }};",
         "{{ motor.state }} ^= 0;",
+        check="single steps both ways",
+        finding="pattern 1101 at cycle",
     ),
     Mutant(
         "an overflow that still waits after a stop",
         "timings/fast_pwm.j2",
         "{{ timer.tifr }} = _BV({{ timer.tov }});",
         "",
+        check="stop at every point of a period",
+        finding="that nobody asked for",
     ),
     Mutant(
         "a late TOP: the period in progress is not looked at",
         "timings/fast_pwm.j2",
         "if (({{ timer.tccrb }} & 7) != next.select) return;",
         "",
+        check="change at every point of a period",
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "a timer that starts from zero after the step interrupt has set it",
         "timings/fast_pwm.j2",
         "{{ timer.tcnt }} = elapsed;",
         "{{ timer.tcnt }} = elapsed & 0;",
+        check="change at every point of a period",
+        finding="cycles off",
+    ),
+    Mutant(
+        "an update event after which the timer starts from zero",
+        "timings/fast_pwm.j2",
+        "{{ timer.tcnt }} = elapsed;",
+        "{{ timer.tcnt }} = elapsed & 0;",
+        check="motor: an event with each step, each with another prescaler",
+        finding="cycles off",
+        spec="uno_variable_speed",
+    ),
+    Mutant(
+        "a position that is one off while the motor goes backward",
+        "macros/motion.j2",
+        "static_cast<int32_t>({{ motor.name }}Position());",
+        "static_cast<int32_t>({{ motor.name }}Position() + !!({{ motor.name }}Motion.mode & 8));",
+        check="stop while running",
+        finding="but the wires made",
+    ),
+    Mutant(
+        "a new period that is left to the timer though the old one is over",
+        "timings/fast_pwm.j2",
+        "if (!({{ timer.tifr }} & _BV({{ timer.tov }}))) next.select = 0;",
+        "next.select = 0;",
+        check=HAZARDS,
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "coils that go off with the last step",
@@ -104,6 +179,8 @@ MUTANTS = (
         "{{ motor.name }}Reached(kThink | kCoast);",
         "{{ motor.name }}Reached(kThink | kCoast); {{ motor.name }}CoilsOff();",
         spec="uno_uln2003_28byj48",
+        check="single steps both ways",
+        finding="pattern 0000 at cycle",
     ),
     Mutant(
         "an update event that is one too many",
@@ -111,6 +188,8 @@ MUTANTS = (
         "if (--motion.updates == 0)",
         "if (motion.updates-- == 0)",
         spec="uno_variable_speed",
+        check="motor: events each few steps, by the sketch",
+        finding="status 0x00 at cycle",
     ),
     Mutant(
         "a new TOP that loses a step count when the prescaler changes",
@@ -118,6 +197,8 @@ MUTANTS = (
         "motion.rest += ahead;",
         "motion.rest += ahead - 1;",
         spec="uno_variable_speed",
+        check="motor: an event with each step, each with another prescaler",
+        finding="position 9 at cycle",
     ),
     Mutant(
         "a clock that is looked at too late",
@@ -125,6 +206,8 @@ MUTANTS = (
         "motion.wake = millisNow() + wait;",
         "motion.wake = millisNow() + wait + 1;",
         spec="uno_variable_speed",
+        check="motor: a millisecond limit beside events",
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "a release that does not look at who else needs the shared enables",
@@ -132,6 +215,8 @@ MUTANTS = (
         "if (enablesNeeded) return;",
         "",
         spec="mega_stacked_shields",
+        check="lower lets go, upper runs",
+        finding="PB5 must go LOW at cycle",
     ),
     Mutant(
         "an init that takes the shared enables from a motor that holds",
@@ -139,6 +224,8 @@ MUTANTS = (
         "  {{ motor.name }}CoilsOff();\n%% endif\n{{ port.clear",
         "  enablesNeeded = 0; {{ motor.name }}CoilsOff();\n%% endif\n{{ port.clear",
         spec="mega_stacked_shields",
+        check="lower lets go, upper stands",
+        finding="PB5 must go LOW at cycle",
     ),
     Mutant(
         "an init that leaves a motor without current in the phase where it was",
@@ -146,6 +233,8 @@ MUTANTS = (
         "{{ port.clear(motor.low_at_start) | block(2) }}",
         "",
         spec="mega_stacked_shields",
+        check="lower lets go, upper stands",
+        finding="coils-off: 1101 after the call",
     ),
     Mutant(
         "a limit that waits for its very millisecond, which the clock may pass over",
@@ -153,12 +242,16 @@ MUTANTS = (
         "if (gone >= motion.limit) return 0;",
         "if (gone == motion.limit) return 0;",
         spec="pro-mini-8mhz_28byj48",
+        check="every short millisecond end point",
+        finding="status 0x40 at cycle",
     ),
     Mutant(
         "a millisecond limit that is one step late",
         "motions/constant.j2",
         "Motion.endMillis) >= 0",
         "Motion.endMillis) > 0",
+        check="millisecond end points",
+        finding="position 50 at cycle",
     ),
     Mutant(
         "a first interval that is a tick too long",
@@ -166,6 +259,8 @@ MUTANTS = (
         "motion.next.first - 1;",
         "motion.next.first;",
         spec="uno_servo_beside",
+        check="single steps both ways",
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "a lap too many where their number is a multiple of 256",
@@ -173,6 +268,8 @@ MUTANTS = (
         "((laps - 1) >> 8)",
         "(laps >> 8)",
         spec="uno_servo_beside",
+        check="restart while running",
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "an interval without its odd tick",
@@ -180,6 +277,8 @@ MUTANTS = (
         "(rest - first)",
         "(first)",
         spec="uno_servo_beside",
+        check="a step each 600011 clocks",
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "a change of speed that acts in the middle of an interval",
@@ -187,6 +286,8 @@ MUTANTS = (
         "{{ motor.name }}RunTimer();\n}\n",
         "{{ motor.name }}RunTimer();\n} else {\n  motion.now.last = motion.next.last;\n}\n",
         spec="uno_servo_beside",
+        check="change at every point of a period",
+        finding="no step interrupt for the step due at",
     ),
     Mutant(
         "a compare match that still waits after a stop",
@@ -194,12 +295,16 @@ MUTANTS = (
         "{{ timer.tifr }} = _BV({{ timer.ocf }});",
         "",
         spec="uno_servo_beside",
+        check="stop at every point of a period",
+        finding="pattern 1100 at cycle",
     ),
     Mutant(
         "a count of missed steps that an init leaves",
         "timings/compare.j2",
         "motion.missed = 0;",
         "",
+        check="motor: interrupts held up very often",
+        finding="missed at cycle",
         spec="uno_servo_beside",
     ),
     Mutant(
@@ -207,6 +312,8 @@ MUTANTS = (
         "timings/compare.j2",
         "  const Masked masked;\n  return {{ motor.name }}Motion.missed;",
         "  return {{ motor.name }}Motion.missed;",
+        check="single steps both ways",
+        finding="without masking it",
         spec="uno_servo_beside",
     ),
 )
@@ -223,22 +330,33 @@ GATE_MUTANTS = {
 
 
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
-def test_a_planted_bug_is_caught(mutant: Mutant, tmp_path: Path) -> None:
+def test_a_planted_bug_is_caught_by_its_check(mutant: Mutant, tmp_path: Path) -> None:
     """
-    The library with the bug compiles, and verification says that it is wrong.
+    The library with the bug compiles, and the check that is there for it says what is wrong.
     """
-    templates = tmp_path / "templates"
-    shutil.copytree(template_dir(), templates)
-    file = templates / mutant.template
-    text = file.read_text(encoding="utf-8")
-    assert mutant.old in text
-    file.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
+    failed = failures(mutant, mutant.plant(tmp_path))
+
+    assert mutant.check in failed, f"{mutant.name} was not noticed there, but by {list(failed)}"
+    assert mutant.finding in failed[mutant.check]
+
+
+def failures(mutant: Mutant, templates: Path) -> dict[str, str]:
+    """
+    Return what failed of the check that must catch *mutant*, and of those that are always made.
+    """
+    if mutant.check == HAZARDS:
+        library = Library.of(mutant.spec, templates)
+        done = batches(library, 0, HAZARDS, sample(library, 0, HAZARD_SEED, 300))
+        found = "; ".join(finding for _, findings, _ in done for finding in findings)
+        return {HAZARDS: found} if found else {}
     loaded = load_spec(SPECS / f"{mutant.spec}.yaml")
 
-    report = verify_spec(loaded, default_compiler(), templates=templates)
+    def only_its_check(scenarios: Sequence[Scenario]) -> Iterator[Scenario]:
+        return (scenario for scenario in scenarios if scenario.name == mutant.check)
 
-    failed = [check.name for check in report.checks if not check.passed]
-    assert failed, f"{mutant.name} was not noticed"
+    report = verify_spec(loaded, default_compiler(), templates=templates, track=only_its_check)
+
+    return {check.name: check.detail for check in report.checks if not check.passed}
 
 
 @pytest.mark.parametrize("name", GATE_MUTANTS)

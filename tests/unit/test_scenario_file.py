@@ -1,0 +1,139 @@
+"""
+Scenario files: whatever a scenario holds is written and read back, and faults have their place.
+"""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from stepgen import api
+from stepgen.errors import StepgenError
+from stepgen.plan.model import Plan
+from stepgen.verify.bench import Call, CallKind, Loop
+from stepgen.verify.scenario_file import load_scenario, scenario_text
+from stepgen.verify.scenarios import Action, Scenario, Wait
+
+SPECS = Path(__file__).parents[2] / "specs"
+CONSTANT = api.plan(SPECS / "mega_pan_tilt.yaml")
+CHANGING = api.plan(SPECS / "uno_variable_speed.yaml")
+BYTES, WORDS, LONGS = (st.integers(0, (1 << bits) - 1) for bits in (8, 16, 32))
+LINES = st.text(st.characters(exclude_categories=("C", "Zl", "Zp")), min_size=1, max_size=40)
+
+
+def actions(plan: Plan) -> st.SearchStrategy[Action]:
+    """
+    Return waits, and all calls with all arguments that the motors of *plan* have.
+    """
+    changes = plan.motors[0].motion.kind == "update-events"
+    motors = st.integers(0, len(plan.motors) - 1)
+    update = (LONGS, WORDS, WORDS) if changes else ()
+    of_changing = {CallKind.UPDATE_CHECK} if changes else set()
+    kinds = st.sampled_from(
+        sorted(of_changing | {CallKind.HOLD, CallKind.RELEASE, CallKind.READ, CallKind.INIT})
+    )
+    every: list[st.SearchStrategy[Action]] = [
+        st.builds(Wait, st.integers(0, 1 << 40)),
+        st.builds(Call, kinds, motors),
+        st.builds(Call, st.just(CallKind.SET_SPEED), motors, BYTES, LONGS, LONGS, *update),
+        st.builds(Call, st.just(CallKind.DIVIDE_CLOCK), st.just(0), st.integers(0, 8)),
+        st.builds(Call, st.just(CallKind.TOP_PER_SECOND), top=WORDS),
+        st.just(Call(CallKind.CLOCKS_PER_SECOND)),
+    ]
+    if changes:
+        every.append(st.builds(Call, st.just(CallKind.CALLBACKS), motors, st.integers(0, 3)))
+    return st.one_of(every)
+
+
+def scenarios(plan: Plan) -> st.SearchStrategy[Scenario]:
+    """
+    Return scenarios for the motors of *plan*, with a name of one line.
+    """
+    steps = st.lists(actions(plan), min_size=1, max_size=12).map(tuple)
+    return st.builds(Scenario, LINES, st.sampled_from(Loop), steps)
+
+
+@given(data=st.data(), plan=st.sampled_from([CONSTANT, CHANGING]))
+def test_a_scenario_is_read_back_as_it_was_written(
+    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject, plan: Plan
+) -> None:
+    """
+    Every call with every argument, every wait, every loop and the name come back equal.
+    """
+    scenario = data.draw(scenarios(plan))
+    file = tmp_path_factory.getbasetemp() / "round_trip.yaml"
+    file.write_text(scenario_text(scenario, plan), encoding="utf-8")
+
+    assert load_scenario(file, plan) == scenario
+
+
+def test_bits_have_names_and_what_the_library_lacks_is_a_number() -> None:
+    """
+    The library without update events has no FASTER: the byte is written as it is passed.
+    """
+    calls = (Call(CallKind.SET_SPEED, 1, 0x85, 640), Call(CallKind.SET_SPEED, 0, 0x82, 640))
+
+    text = scenario_text(Scenario("bits", Loop.BUSY, calls), CONSTANT)
+
+    assert "control: [DRV_EN, ENDPOINT_MILLIS, DIRECTION], top: 640" in text
+    assert "control: 130, top: 640" in text
+
+
+@pytest.mark.parametrize(
+    ("step", "wrong", "reason"),
+    [
+        ("{call: set_speed, control: [FASTER]}", "FASTER", "has no update events; give it"),
+        ("{call: set_speed, control: [FAULT]}", "FAULT", "is no bit of set_speed; write one"),
+        ("{call: set_speed, control: [DRVEN]}", "DRVEN", "write 'DRV_EN', "),
+        ("{call: set_speed, control: 256}", "256", "less than or equal to 255"),
+        ("{call: set_speed, count: 3}", "3", "has no update events; give it"),
+        ("{call: update_check}", "update_check", "has no update events; give it"),
+        ("{call: hold, motor: roll}", "roll", "is no motor of this spec; it has pan, tilt"),
+        ("{call: hold, top: 3}", "3", "top is no argument of hold; it has motor"),
+        ("{call: clocks_per_second, top: 3}", "3", "of clocks_per_second; it has none"),
+        ("{call: divide_clock, control: [FAULT]}", "FAULT", "bit of divide_clock; write a number"),
+        ("{call: jump}", "jump", "write 'set_speed', "),
+        ("{wait_ms: 1, wait_clocks: 2}", "{wait", "write call, wait_ms or wait_clocks"),
+        ("{wait_clocks: -1}", "-1", "greater than or equal to 0"),
+    ],
+)
+def test_what_a_motor_lacks_is_refused_with_its_place(
+    tmp_path: Path, step: str, wrong: str, reason: str
+) -> None:
+    """
+    Each fault names line and column, and a way out.
+    """
+    line = f"  - {step}"
+    file = tmp_path / "wrong.yaml"
+    file.write_text(f"loop: busy\nsteps:\n{line}\n")
+
+    with pytest.raises(StepgenError) as refusal:
+        load_scenario(file, CONSTANT)
+
+    assert f"wrong.yaml:3:{line.index(wrong) + 1}: error: " in str(refusal.value)
+    assert reason in str(refusal.value)
+    assert len(refusal.value.faults) == 1
+
+
+def test_a_scenario_without_a_step_is_refused(tmp_path: Path) -> None:
+    """
+    An empty list of steps is a fault, with what to write.
+    """
+    file = tmp_path / "empty.yaml"
+    file.write_text("steps: []\n")
+
+    with pytest.raises(StepgenError, match=r"empty.yaml:1:1: error: steps is empty; write a call"):
+        load_scenario(file, CONSTANT)
+
+
+def test_a_byte_that_the_library_must_refuse_can_be_given_as_a_number(tmp_path: Path) -> None:
+    """
+    What the contract refuses is a scenario too: the call returns its error.
+    """
+    file = tmp_path / "raw.yaml"
+    file.write_text("steps: [{call: set_speed, control: 0xC2, top: 640}, {wait_clocks: 7}]")
+
+    scenario = load_scenario(file, CONSTANT)
+
+    assert scenario.actions == (Call(CallKind.SET_SPEED, 0, 0xC2, 640), Wait(7))
