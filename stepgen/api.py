@@ -24,15 +24,12 @@ from stepgen.library.write import (
     zip_library,
     zip_refusals,
 )
-from stepgen.lint import LintReport, Rule
-from stepgen.lint import lint as lint_folder
-from stepgen.lint.linter import NOT_CHECKED, RULES
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
-from stepgen.schema import json_schema as _json_schema
 from stepgen.spec import LoadedSpec, load_spec
 
 if TYPE_CHECKING:
+    from stepgen.lint import LintReport, Rule
     from stepgen.verify.doctor import Diagnosis
     from stepgen.verify.report import SpecReport
     from stepgen.verify.runner import Outcome
@@ -191,23 +188,29 @@ def json_schema() -> dict[str, Any]:
     """
     Return the JSON Schema of a spec, for editors; every valid spec fits it.
     """
-    return _json_schema()
+    from stepgen import schema  # noqa: PLC0415 - generating needs none
+
+    return schema.json_schema()
 
 
-def lint(path: Path) -> LintReport:
+def lint(path: Path) -> "LintReport":
     """
     Check the library folder *path* against the rules of the Arduino library manager.
 
     Raises:
         StepgenError: It is no folder, or cannot be read.
     """
+    from stepgen.lint import lint as lint_folder  # noqa: PLC0415 - generating needs none
+
     return lint_folder(path)
 
 
-def lint_rules() -> tuple[Rule, ...]:
+def lint_rules() -> "tuple[Rule, ...]":
     """
     Return every rule of `lint`, in the order of their names.
     """
+    from stepgen.lint.linter import RULES  # noqa: PLC0415 - the same
+
     return RULES
 
 
@@ -215,6 +218,8 @@ def lint_not_checked() -> tuple[tuple[str, str], ...]:
     """
     Return the rules of Arduino Lint that `lint` cannot check, and what they are about.
     """
+    from stepgen.lint.linter import NOT_CHECKED  # noqa: PLC0415 - the same
+
     return NOT_CHECKED
 
 

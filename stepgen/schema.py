@@ -22,9 +22,7 @@ def json_schema() -> dict[str, Any]:
     exists, only `stepgen check` says.
     """
     schema = _untitled(Spec.model_json_schema(schema_generator=_Schema))
-    for part in schema["$defs"].values():
-        # What the short form puts right into the motor is missing in the drive.
-        part["required"] = [name for name in part.get("required", ()) if name not in SHORT_FORMS]
+    _allow_short_forms(schema["$defs"])
     fields = schema["properties"]
     fields["board"] |= {"enum": [board.name for board in boards()]}
     libraries = (*SKETCH_LIBRARIES, "analogWrite")
@@ -33,6 +31,17 @@ def json_schema() -> dict[str, Any]:
         "pattern": f"^({'|'.join(libraries)})( .+)?$",
     }
     return {"$schema": DRAFT, "title": "stepgen spec", **schema}
+
+
+def _allow_short_forms(parts: dict[str, Any]) -> None:
+    """
+    Let each field of `SHORT_FORMS` stand in the motor too, and be missing where it belongs.
+    """
+    motor = parts["Motor"]["properties"]
+    for part in parts.values():
+        for name in part["properties"].keys() & SHORT_FORMS.keys():
+            motor.setdefault(name, part["properties"][name])
+        part["required"] = [name for name in part.get("required", ()) if name not in SHORT_FORMS]
 
 
 class _Schema(GenerateJsonSchema):

@@ -1,8 +1,12 @@
 """
-What the campaigns covered, at the end of their run.
+What holds for all tests; and what the campaigns covered, at the end of their run.
 """
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("stepgen", deadline=None)  # how long an example takes decides nothing
+settings.load_profile("stepgen")
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -4,7 +4,7 @@
 
 import os
 from collections.abc import Iterator
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -61,6 +61,8 @@ def matrix(
 
     simulators = [*api.tolerances()] if simulator == _ALL else [simulator]
     pairs = [(path, compiler.name) for path in paths for compiler in find_compilers()]
+    from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - slow to import
+
     with ProcessPoolExecutor(max_workers=jobs) as pool:
         futures = {
             pool.submit(_verify, *pair, name, may_refuse=simulator == _ALL): (*pair, name)

@@ -20,10 +20,10 @@ _SERIAL_SPACING_US = 80
 _SERVO_PULSE_US = 544  # MIN_PULSE_WIDTH
 _TONE_SPACING_US = 100  # 5 kHz: two interrupts a period
 _SERVO_BASIS = (
-    "bounded in a build of what src/avr/Servo.cpp of Servo 1.2 does, and a tenth more; Servo comes "
+    "estimated from a reduced copy of the interrupt of Servo 1.2, and a tenth more; Servo comes "
     "with no package, so no test repeats it"
 )
-_JUMP_TABLE_BASIS = "digitalWrite() goes through a jump table there, each way of which was added up"
+_JUMP_TABLE_BASIS = "estimated from the ATmega328P's: digitalWrite() has a jump table more there"
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     AfterValidator,
+    BeforeValidator,
     Field,
     StringConstraints,
     field_validator,
@@ -16,8 +17,6 @@ from pydantic import (
 from stepgen.spec.base import SpecModel, short_form
 from stepgen.spec.drives import Drive
 from stepgen.spec.motions import Motion
-from stepgen.spec.pins import PinName
-from stepgen.spec.sequence import Sequence
 from stepgen.spec.timings import Timing
 from stepgen.spec.turns import Ratio, Steps
 
@@ -156,19 +155,6 @@ class Motor(SpecModel):
     """The highest rate that the sketch will ask for; without it all that is proven."""
 
 
-class MotorInShort(Motor):
-    """
-    One motor as it may be written: timer, pins and sequence also stand right in the motor.
-    """
-
-    timer: int | None = None
-    """The number of the timer, instead of in `timing`."""
-    pins: tuple[PinName, ...] = ()
-    """The pins, instead of in `drive`."""
-    sequence: Sequence = "full"
-    """The sequence of steps, instead of in `drive`."""
-
-
 def _motor_name(name: str) -> str:
     if not _MOTOR_NAME.fullmatch(name):
         raise ValueError(
@@ -181,7 +167,7 @@ def _motor_name(name: str) -> str:
 MotorName = Annotated[str, AfterValidator(_motor_name)]
 """A motor's name, from which the names of its functions are made."""
 
-MotorEntry = Annotated[Motor, short_form(_long_form, MotorInShort)]
+MotorEntry = Annotated[Motor, BeforeValidator(_long_form)]
 
 
 class Spec(SpecModel):
