@@ -17,9 +17,10 @@ from stepgen.devices.mcus.atmega328p import MCU as UNO
 from stepgen.devices.mcus.atmega2560 import MCU as MEGA
 from stepgen.errors import StepgenError
 from stepgen.verify.bounds.cycles import Core
-from stepgen.verify.bounds.disassembly import disassemble
+from stepgen.verify.bounds.disassembly import disassemble, parse
 from stepgen.verify.bounds.graph import Graph
 from stepgen.verify.bounds.machine import Memory
+from stepgen.verify.bounds.masked import MaskedSections
 from stepgen.verify.bounds.search import Search
 from stepgen.verify.bounds.worst_case import WorstCase
 from stepgen.verify.compilers import Compiler, find_compilers
@@ -381,3 +382,21 @@ def test_the_longest_path_is_told_in_functions_and_lines(worst_case: Assemble) -
     assert response == "response: 4 cycles"
     assert vector.endswith(": 3 cycles (program.S:4)")
     assert path == ["isr: 3 cycles (program.S:7-8)", "on: 5 cycles (program.S:10-11)"]
+
+
+def test_the_guard_counts_where_its_line_is_taken_for_the_sketchs() -> None:
+    """
+    Link-time optimisation writes a sketch's line before an inlined CLI; the guard's name stays.
+    """
+    program = parse(
+        "00000100 <main>:\nloop():\n/tmp/sketch.cpp:34\n"
+        " 100:\tf8 94       \tcli\n 102:\t8f bf       \tout\t0x3f, r24\t; 63\n"
+        "_ZN6MaskedC2Ev():\n"
+        " 104:\tf8 94       \tcli\n 106:\t00 00       \tnop\n"
+        " 108:\t8f bf       \tout\t0x3f, r24\t; 63\n"
+        " 10a:\t08 95       \tret\n"
+    )
+
+    sections = MaskedSections(program, Core.of(UNO), Memory.of(UNO), "Pan.cpp")
+
+    assert [start for start, _ in sections.each()] == [0x104]

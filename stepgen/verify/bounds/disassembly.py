@@ -14,6 +14,7 @@ from stepgen.verify.compilers import Compiler, run
 
 _FUNCTION = re.compile(r"([0-9a-f]+) <(.+)>:")
 _SOURCE = re.compile(r"(?:.*/)?([^/:]+:\d+)(?: \(discriminator \d+\))?")
+_SCOPE = re.compile(r"(\S.*)\(\):")
 _INSTRUCTION = re.compile(r"\s*([0-9a-f]+):\t((?:[0-9a-f]{2} )+)\s*\t(\S+)\s*([^;]*)")
 _SKIPS = frozenset({"cpse", "sbrc", "sbrs", "sbic", "sbis"})
 
@@ -29,6 +30,7 @@ class Line:
         name: Its mnemonic, as objdump writes it: ``brne``, ``ldd``.
         operands: ``("r24", "0x3f")``.
         source: The line that it was compiled from, ``Pan.cpp:120``; "" where that is unknown.
+        scope: The function that it was written in, as the linker names it, inlined or not.
     """
 
     address: int
@@ -36,6 +38,7 @@ class Line:
     name: str
     operands: tuple[str, ...]
     source: str = ""
+    scope: str = ""
 
     @property
     def following(self) -> int:
@@ -186,14 +189,16 @@ def parse(listing: str) -> Program:
 
 
 def _read(listing: str, functions: dict[int, str]) -> Iterator[Line]:
-    source = ""
+    source = scope = ""
     for text in listing.splitlines():
         if found := _INSTRUCTION.match(text):
             address, code, name, operands = found.groups()
             words = tuple(part.strip() for part in operands.split(",") if part.strip())
-            yield Line(int(address, 16), len(code.split()), name, words, source)
+            yield Line(int(address, 16), len(code.split()), name, words, source, scope)
         elif found := _FUNCTION.fullmatch(text):
             functions[int(found[1], 16)] = found[2].partition("(")[0]
-            source = ""
+            source = scope = ""
+        elif found := _SCOPE.fullmatch(text):
+            scope = found[1]
         elif found := _SOURCE.fullmatch(text):
             source = found[1]

@@ -2,6 +2,7 @@
 The longest stretch that the main line has interrupts off: from CLI until SREG is restored.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
@@ -14,11 +15,14 @@ from stepgen.verify.bounds.machine import Memory
 from stepgen.verify.bounds.search import Search, Way
 
 _SREG_IO = 0x3F
+# The library's guard. Where link-time optimisation has put one of its functions into a sketch, a
+# line of the guard can be taken for one of the sketch; its name stays.
+_GUARD = re.compile(r"_ZN6MaskedC\dEv|Masked::Masked\(.*\)|Masked::Masked")
 
 
 class MaskedSections:
     """
-    The stretches of *program* with interrupts off that begin in one of its source files.
+    The stretches of *program* with interrupts off that begin in one source file or in the guard.
 
     Where interrupts go off in a function that returns before they come on again, as a C++
     constructor does, the stretch goes on in each of its callers.
@@ -61,8 +65,12 @@ class MaskedSections:
 
     @cached_property
     def _starts(self) -> list[Line]:
-        lines = self._program.lines.values()
-        return [x for x in lines if x.name == "cli" and x.source.split(":")[0] == self._source]
+        return [
+            line
+            for line in self._program.lines.values()
+            if line.name == "cli"
+            and (line.source.split(":")[0] == self._source or _GUARD.fullmatch(line.scope))
+        ]
 
     def _reach(self, start: Line) -> Reach:
         """
