@@ -3,6 +3,7 @@ What datasheets and boards say: chips, ports, timers, vectors, pins, and other l
 """
 
 from stepgen.devices.catalogue import boards, find_board
+from stepgen.devices.drivers import DRIVERS, PulseTimes, StepDriver
 from stepgen.devices.libraries import (
     SKETCH_LIBRARIES,
     LibraryClaims,
@@ -21,8 +22,11 @@ from stepgen.devices.model import (
     Timer16,
     Vector,
 )
+from stepgen.devices.sockets import SHIELDS, Socket, SocketShield
 
 __all__ = [
+    "DRIVERS",
+    "SHIELDS",
     "SKETCH_LIBRARIES",
     "Board",
     "LibraryClaims",
@@ -30,8 +34,12 @@ __all__ = [
     "Pin",
     "Port",
     "PortBit",
+    "PulseTimes",
     "Register",
     "SketchLibrary",
+    "Socket",
+    "SocketShield",
+    "StepDriver",
     "Timer",
     "Timer8",
     "Timer16",

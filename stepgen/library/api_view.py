@@ -68,7 +68,9 @@ _CODES = (
     _Name("MOTOR_ERROR_RUNNING", -5, "not while the motor runs"),
     _Name("MOTOR_WARN_NOT_ENABLED", 1, "a speed without MOTOR_CTRL_DRV_EN: the motor stops"),
 )
-_FUNCTIONS = ("ShieldInit", "SetSpeed", "ReadStatus", "ReadPosition", "Hold", "Release")
+_FUNCTIONS = ("ShieldInit", "SetSpeed", "ReadStatus", "ReadPosition")
+_SWITCH_CODES = {"MOTOR_ERROR_RUNNING"}
+_SWITCH_FUNCTIONS = ("Hold", "Release")
 _CHANGING_FUNCTIONS = ("TimerUpdateCheck", "CallBackPositionReached", "CallBackFault")
 _RANGE = ("MOTOR_MIN_TOP", "MOTOR_MAX_TOP")
 
@@ -101,6 +103,7 @@ def function_names(plan: Plan) -> tuple[str, ...]:
     names = ["motorTimerGetIOclocksPerSecond", "motorTimerCalcPerSecond"]
     for motor in plan.motors:
         parts: tuple[str, ...] = _FUNCTIONS
+        parts += _SWITCH_FUNCTIONS if motor.switches_current else ()
         parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
         parts += ("StepsForTurns",) if motor.steps_per_turn is not None else ()
         names += [f"{motor.name}{part}" for part in parts]
@@ -125,7 +128,8 @@ def constant_names(plan: Plan) -> tuple[str, ...]:
 
 def _used(names: Iterable[_Name], plan: Plan) -> tuple[_Name, ...]:
     kinds = {motor.motion.kind for motor in plan.motors}
-    return tuple(name for name in names if name.motions & kinds)
+    unused = set() if any(motor.switches_current for motor in plan.motors) else _SWITCH_CODES
+    return tuple(name for name in names if name.motions & kinds and name.name not in unused)
 
 
 def _definitions(kind: str, names: tuple[_Name, ...]) -> tuple[Definition, ...]:

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from stepgen.devices import Board, Timer
-from stepgen.plan.coils import CoilDrive
 from stepgen.plan.instructions import Gate, Storage
 from stepgen.plan.isr import HotPath, Motion
-from stepgen.plan.kernels import Kernel
+from stepgen.plan.kernels import Drive, Kernel
 from stepgen.spec import Library
+
+_WAKE_TICKS_CYCLES = 2 * 1024
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ class MotorPlan:
 
     name: str
     motion: Motion
-    drive: CoilDrive
+    drive: Drive
     kernel: Kernel
     timing: TimerPlan
     storage: Storage
@@ -113,6 +114,23 @@ class MotorPlan:
             + self.kernel.handler.masked
             - (0 if self.timing.is_set_anew else self.motion.masked_setting_cycles)
         )
+
+    @property
+    def switches_current(self) -> bool:
+        """
+        Return whether its coils can be switched off.
+        """
+        return bool(self.drive.released)
+
+    @property
+    def wake_cycles(self) -> int:
+        """
+        Return how long the first interval from rest must be at least; 0 where every one is.
+
+        It is cut off to whole ticks, and its first one can be short: two ticks of 1024 make up.
+        """
+        enable = self.drive.enable_cycles
+        return enable + _WAKE_TICKS_CYCLES if enable > self.timing.smallest_period_cycles else 0
 
     @property
     def port_letters(self) -> str:

@@ -26,6 +26,9 @@ class MotorFacts:
         motion: Whether its library has update events.
         shares_enables: Whether the wires that switch its coils off are another motor's too.
         timing: What paces it.
+        has_direction: Whether *phases* are what the wires show forward and backward, not a table
+            to go along.
+        wake_cycles: The shortest first interval from rest, as a virtual value.
     """
 
     phases: tuple[Pattern, ...]
@@ -35,6 +38,8 @@ class MotorFacts:
     motion: MotionKind = "constant"
     shares_enables: bool = False
     timing: TimingKind = "fast-pwm"
+    has_direction: bool = False
+    wake_cycles: int = 0
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:

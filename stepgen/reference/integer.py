@@ -7,7 +7,7 @@ contract is the table of systems/1-motor-driver.md; the timer is in `stepgen.ref
 
 from typing import assert_never
 
-from stepgen.reference.axis import Axis, wrapped_int32
+from stepgen.reference.axis import Axis, DirectedAxis, Turn, wrapped_int32
 from stepgen.reference.contract import Code, Control, Status
 from stepgen.reference.engine import Engine
 from stepgen.reference.facts import MotorFacts, ServiceCycle, served_at_once
@@ -59,7 +59,8 @@ class MotorModel:
         position: int = 0,
     ) -> None:
         self._facts = facts
-        self._axis = Axis(facts.phases, facts.released, wrapped_int32(position))
+        axis = DirectedAxis if facts.has_direction else Axis
+        self._axis = axis(facts.phases, facts.released, wrapped_int32(position))
         self._engine = Engine(facts, self._axis, Pace(service_cycle))
         self._notices = self._engine.notices
         self._now_cycle = 0
@@ -129,6 +130,13 @@ class MotorModel:
         Return each change so far of whether the motor needs current; it begins without.
         """
         return tuple(self._axis.needs)
+
+    @property
+    def turns(self) -> tuple[Turn, ...]:
+        """
+        Return each change of DIR so far; it begins forward, and without DIR there is none.
+        """
+        return tuple(self._axis.turns)
 
     @property
     def callbacks(self) -> tuple[CallbackMade, ...]:

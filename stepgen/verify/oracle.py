@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 
 from stepgen.plan.model import Plan
+from stepgen.reference.axis import Turn
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sharing import Need
 from stepgen.reference.stimuli import (
@@ -42,7 +43,7 @@ class Comparison:
         jitter_cycles: The latest edge, counted from its deadline.
         longest_isr_cycles: The longest run of its step interrupt.
         isr_cycles: All runs together.
-        needs: When the motor needs current, as the model says.
+        needs: When the motor needs current, as the model says; turns: when it turns round.
     """
 
     motor: str
@@ -52,6 +53,7 @@ class Comparison:
     longest_isr_cycles: int = 0
     isr_cycles: int = 0
     needs: tuple[Need, ...] = ()
+    turns: tuple[Turn, ...] = ()
 
     def report(self, finding: str) -> None:
         """
@@ -154,6 +156,13 @@ class Oracle:
         Return when the motor needs current, as far as the model has come.
         """
         return self._model.needs
+
+    @property
+    def turns(self) -> tuple[Turn, ...]:
+        """
+        Return when DIR changes, as far as the model has come.
+        """
+        return self._model.turns
 
     def _service_cycle(self, deadline: int) -> int:
         tolerance = self._scene.tolerance_cycles

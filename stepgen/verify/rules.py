@@ -37,7 +37,7 @@ def broken_rules(
     starts = scene.trace.clock_starts(subject.timer)
     yield from _wrong_changes(subject, runs, calls, steps, starts)
     yield from _wrong_starts(subject, scene, calls, steps)
-    yield from _late_edges(scene.plan.motors[index], runs, calls, steps)
+    yield from _late_edges(subject, scene.plan.motors[index], runs, calls, steps)
 
 
 def _unmasked_calls(scene: Scene, answers: Sequence[Answer]) -> Iterator[str]:
@@ -108,7 +108,7 @@ def _wrong_starts(
         first = firsts.get(index)
         if first is None or not any(commit[0] < start.cycle <= commit[1] for start in starts):
             continue
-        setting = subject.facts.setting(answer.call.top)
+        setting = subject.facts.setting(max(answer.call.top, subject.facts.wake_cycles))
         wait = first.deadline_cycle - commit[0]
         longest = setting.period_cycles + commit[1] - commit[0]
         if not setting.period_cycles - setting.prescaler <= wait <= longest:
@@ -119,7 +119,11 @@ def _wrong_starts(
 
 
 def _late_edges(
-    motor: MotorPlan, runs: Sequence[Run], calls: Sequence[Answer], steps: Sequence[Edge]
+    subject: Subject,
+    motor: MotorPlan,
+    runs: Sequence[Run],
+    calls: Sequence[Answer],
+    steps: Sequence[Edge],
 ) -> Iterator[str]:
     """
     Within the interrupt the wires change at the cycle that the plan states.
@@ -138,6 +142,6 @@ def _late_edges(
             call.control & Control.ENDPOINT_MILLIS and call.limit
         )
         latest = motor.isr_bound_cycles if thinks else path.boundary_edge_cycles + WAKE_CYCLES
-        taken = run.writes[-1].cycle - run.entered
+        taken = subject.edge(run).cycle - run.entered
         if taken > latest:
             yield f"the step due at cycle {run.raised} took {taken} cycles; {latest} are planned"

@@ -5,6 +5,7 @@ Compare: registers and bits of the timer that runs through.
 from dataclasses import dataclass
 
 from stepgen.plan.model import MotorPlan
+from stepgen.plan.timings.compare import PRESCALER
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,7 @@ class CompareView:
     ocf: str
     ocie: str
     clock: str
+    wake: str
 
 
 def view(motor: MotorPlan) -> CompareView:
@@ -44,4 +46,16 @@ def view(motor: MotorPlan) -> CompareView:
         ocf=f"OCF{n}A",
         ocie=f"OCIE{n}A",
         clock=f"CS{n}1",
+        wake=_wake(motor.wake_cycles),
     )
+
+
+def _wake(cycles: int) -> str:
+    """
+    Return an interval of *cycles* as an initialiser, like chooseInterval(); empty if there is none.
+    """
+    if not cycles:
+        return ""
+    laps, rest = divmod(cycles // PRESCALER, 256)
+    first = rest // 2 + 128
+    return f"{{{first}, {(rest - first) % 256}, {laps % 256}, {(laps - 1) // 256}}}"

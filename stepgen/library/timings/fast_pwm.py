@@ -5,7 +5,7 @@ Fast PWM: registers, mode bits, and the ticks that pass until a step has set the
 from dataclasses import dataclass
 
 from stepgen.plan.model import MotorPlan
-from stepgen.plan.timings.fast_pwm import PRESCALERS, elapsed_cycles
+from stepgen.plan.timings.fast_pwm import PRESCALERS, choose_setting, elapsed_cycles
 
 _BYTE_MAX = 0xFF
 
@@ -36,6 +36,7 @@ class FastPwmView:
     elapsed_woken: int
     elapsed_limited: int
     elapsed_note: str
+    wake: str
 
 
 def view(motor: MotorPlan) -> FastPwmView:
@@ -67,7 +68,18 @@ def view(motor: MotorPlan) -> FastPwmView:
         elapsed_woken=len(PRESCALERS),
         elapsed_limited=2 * len(PRESCALERS),
         elapsed_note="; then both with a limit in\n// milliseconds" if changes else "",
+        wake=_wake(motor.wake_cycles),
     )
+
+
+def _wake(cycles: int) -> str:
+    """
+    Return the setting of an interval of *cycles* as an initialiser; empty if there is none.
+    """
+    if not cycles:
+        return ""
+    setting = choose_setting(cycles)
+    return f"{{{setting.top}, {PRESCALERS.index(setting.prescaler) + 1}}}"
 
 
 def _ticks(cycles: int) -> str:

@@ -36,6 +36,7 @@ OF_TIMING: Mapping[str, Sequence[str]] = {
 OF_KERNEL: Mapping[str, Sequence[str]] = {
     "toggle": ("pin-writes", "pin-writes-1280", "pin-writes-2560"),
     "ring": (),
+    "pulse": ("pin-writes", "pin-writes-1280", "pin-writes-2560"),
 }
 
 
