@@ -106,6 +106,8 @@ def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
     yield ("timer", f"{motor.timing.timer.number}, {motor.timing.kind}, {motor.timing.vector}")
     yield ("motion", motor.motion.kind)
     yield ("steps per turn", _turn(motor))
+    if motor.steps_per_mm:
+        yield ("steps per mm", f"{float(motor.steps_per_mm):.10g}")
     yield ("at rest", "coils off" if motor.releases_at_rest else "coils hold")
     yield ("step interrupt", f"{path.usual_cycles} cycles, response to RETI")
     if path.lap_cycles:

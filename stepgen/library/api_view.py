@@ -7,6 +7,7 @@ What no motor of the library can do has no name in it.
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from stepgen.library import lengths
 from stepgen.plan.model import MotorPlan, Plan
 
 _CHANGING = frozenset({"update-events"})
@@ -106,6 +107,7 @@ def function_names(plan: Plan) -> tuple[str, ...]:
         parts += _SWITCH_FUNCTIONS if motor.switches_current else ()
         parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
         parts += ("StepsForTurns",) if motor.steps_per_turn is not None else ()
+        parts += lengths.FUNCTIONS if motor.steps_per_mm is not None else ()
         names += [f"{motor.name}{part}" for part in parts]
         names += [dump_name(motor)] if motor.motion.dumps else []
     return tuple(names)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from stepgen.library.api_view import dump_name
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
 from stepgen.library.kernel_view import KernelView, kernel_view
+from stepgen.library.lengths import Lengths, lengths
 from stepgen.library.port_view import Bits, Change, bit_groups, switched
 from stepgen.library.prose import (
     init_comment,
@@ -59,6 +60,7 @@ class MotorView:
     start_comment: tuple[str, ...]
     release_comment: tuple[str, ...]
     turns: Turns | None
+    lengths: Lengths | None
     kernel_name: str
     timing_name: str
     motion_name: str
@@ -108,6 +110,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         start_comment=start_comment(motor, need, board.f_cpu_hz),
         release_comment=release_comment(need),
         turns=_turns(motor),
+        lengths=lengths(motor, board.f_cpu_hz),
         kernel_name=motor.kernel.kind,
         timing_name=module_name(motor.timing.kind),
         motion_name=module_name(motor.motion.kind),

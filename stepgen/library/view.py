@@ -106,7 +106,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         motion_structs=_motion_structs(motors),
         think_bit=THINK_BIT,
         dumps=any(motor.motion.dumps for motor in plan.motors),
-        timing_names=tuple(sorted({motor.timing_name for motor in motors})),
+        timing_names=tuple(sorted({motor.timer.shared_by for motor in motors})),
         needs_comment=needs_comment(plan),
         motors=motors,
         keywords=_keywords(plan),
@@ -116,7 +116,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
 
 
 def _motion_structs(motors: tuple[MotorView, ...]) -> tuple[MotionStruct, ...]:
-    pairs = {(m.motion_name, m.timing_name): m.timer.struct_prefix for m in motors}
+    pairs = {(m.motion_name, m.timer.shared_by): m.timer.struct_prefix for m in motors}
     return tuple(MotionStruct(*pair, prefix) for pair, prefix in sorted(pairs.items()))
 
 

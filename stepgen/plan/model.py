@@ -75,6 +75,7 @@ class MotorPlan:
         gate: What the timing puts before the step.
         hot_path: The step interrupt.
         steps_per_turn: Steps of its sequence in one turn of the shaft, or None.
+        steps_per_mm: Steps of its sequence, or microsteps, in one millimetre of its way, or None.
         releases_at_rest: Whether the coils go off when it comes to rest.
         owns_ports: Whether the sketch leaves the motor's ports alone.
     """
@@ -89,6 +90,7 @@ class MotorPlan:
     gate: Gate
     hot_path: HotPath
     steps_per_turn: Fraction | None
+    steps_per_mm: Fraction | None
     releases_at_rest: bool
     owns_ports: bool
 

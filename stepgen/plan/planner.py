@@ -192,6 +192,7 @@ def _plan_motor(
             kernel, storage, board.mcu, handler, gate, watches_clock=motion.watches_clock
         ),
         steps_per_turn=_steps_per_turn(motor, drive),
+        steps_per_mm=motor.steps_per_mm,
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",
     )

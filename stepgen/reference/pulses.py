@@ -16,7 +16,7 @@ _LONGER_CYCLES = 16
 _NS_IN_A_SECOND = 1_000_000_000
 # The first interval is cut off to a whole tick, and can be one tick short: 1024 cycles each.
 _WAKE_MARGIN_CYCLES = 2048
-_NEVER_SHORTER_CYCLES = {"fast-pwm": 640, "compare": 2048}
+_NEVER_SHORTER_CYCLES = {"fast-pwm": 640, "ctc": 640, "compare": 2048}
 """Intervals that every motor of a timing has at least: a driver that is quicker need not wait."""
 
 

@@ -18,7 +18,7 @@ from stepgen.spec.base import SpecModel
 from stepgen.spec.drives import Drive
 from stepgen.spec.motions import Motion
 from stepgen.spec.timings import Timing
-from stepgen.spec.turns import Steps
+from stepgen.spec.turns import Ratio, Steps
 
 _LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
@@ -129,6 +129,7 @@ class Motor(SpecModel):
     timing: Timing = Field(default="fast-pwm", validate_default=True)
     motion: Motion = Field(default="constant", validate_default=True)
     steps_per_turn: Steps | None = None
+    steps_per_mm: Ratio | None = None
     at_rest: Literal["hold", "release"] = "release"
     port: Literal["shared", "owned"] = "shared"
     budget: Budget | None = None

@@ -25,6 +25,12 @@ class TimerView(Protocol):
         Return what the structs of its motions begin with, so that those of two timings differ.
         """
 
+    @property
+    def shared_by(self) -> str:
+        """
+        Return the partial whose shared part and fields it has: its own, or that of a like timing.
+        """
+
 
 def timer_view(motor: MotorPlan) -> TimerView:
     """

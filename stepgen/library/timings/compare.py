@@ -16,6 +16,7 @@ class CompareView:
 
     number: int
     struct_prefix: str
+    shared_by: str
     tccra: str
     tccrb: str
     tcnt: str
@@ -37,6 +38,7 @@ def view(motor: MotorPlan) -> CompareView:
     return CompareView(
         number=n,
         struct_prefix="Compare",
+        shared_by="compare",
         tccra=timer.tccra.name,
         tccrb=timer.tccrb.name,
         tcnt=timer.tcnt.name,

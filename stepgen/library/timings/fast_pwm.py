@@ -18,6 +18,7 @@ class FastPwmView:
 
     number: int
     struct_prefix: str
+    shared_by: str
     tccra: str
     tccrb: str
     tcnt: str
@@ -26,6 +27,7 @@ class FastPwmView:
     tifr: str
     tov: str
     toie: str
+    waiting: str
     mode_a: str
     mode_b: str
     linkage: str
@@ -50,6 +52,7 @@ def view(motor: MotorPlan) -> FastPwmView:
     return FastPwmView(
         number=n,
         struct_prefix="",
+        shared_by="fast_pwm",
         tccra=timer.tccra.name,
         tccrb=timer.tccrb.name,
         tcnt=timer.tcnt.name,
@@ -58,6 +61,7 @@ def view(motor: MotorPlan) -> FastPwmView:
         tifr=timer.tifr.name,
         tov=f"TOV{n}",
         toie=f"TOIE{n}",
+        waiting="an overflow",
         mode_a=f"_BV(WGM{n}1) | _BV(WGM{n}0)",
         mode_b=f"_BV(WGM{n}3) | _BV(WGM{n}2)",
         linkage="SHARED" if changes else "INLINE",

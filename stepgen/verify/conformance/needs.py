@@ -31,6 +31,11 @@ OF_TIMING: Mapping[str, Sequence[str]] = {
         # Without these a slow step, or one too many at a start, would not be seen.
         *("double-buffer", "slow-step", "count-kept", "late-compare-shows"),
     ),
+    "ctc": (
+        *("ctc-period", "prescaler-phase", "compare-flag-edge", "counts-exactly", "flag-write"),
+        # Without these a compare that has already passed would not be seen.
+        *("ctc-wrap", "count-kept"),
+    ),
     "compare": ("timer2-compare", "flag-write"),
 }
 OF_KERNEL: Mapping[str, Sequence[str]] = {

@@ -6,7 +6,7 @@ void setup() {
   zShieldInit();
 }
 
-// One turn one way, then back, each time the last one has ended.
+// One way of 200 steps one way, then back, each time the last one has ended.
 static void turnZ() {
   static uint8_t direction = MOTOR_CTRL_DIRECTION;
   static bool started = false;
@@ -14,7 +14,7 @@ static void turnZ() {
   started = true;
   direction ^= MOTOR_CTRL_DIRECTION;
   const uint32_t interval = motorTimerCalcPerSecond(200);  // steps per second
-  zSetSpeed(MOTOR_CTRL_DRV_EN | direction, interval, zStepsForTurns(1));
+  zSetSpeed(MOTOR_CTRL_DRV_EN | direction, interval, 200);
 }
 
 void loop() {
