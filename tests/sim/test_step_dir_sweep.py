@@ -129,11 +129,12 @@ def test_a_sketch_sweeps_and_prints_all_the_while(machine_with: MachineWith) -> 
     assert values["phase"] == 1
     assert values["nanometres"] == NM_PER_STEP * values["steps"]
     assert len(rises) > 10_000
-    # The slowest of these speeds, 20 um/s, is 80 steps/s: 200 000 cycles. A lap that was missed
-    # would be 65 536 ticks more.
-    late = 2_000
-    assert max(after - before for before, after in pairwise(rises)) <= 2 * 200_000 + late
-    assert min(after - before for before, after in pairwise(rises)) >= 32  # two A4988 times
+    gaps = sorted(after - before for before, after in pairwise(rises))
+    # The slowest of these speeds, 20 um/s, is 80 steps/s: 200 000 cycles, and a step can be late by
+    # the millis and USART interrupts. The one longer gap is the stop between the two sweeps: 20 ms.
+    assert gaps[-2] <= 200_000 + 500
+    assert 320_000 <= gaps[-1] <= 320_000 + 200_000 + 16_000
+    assert gaps[0] >= 32  # twice what an A4988 needs
 
 
 def test_a_match_that_has_passed_is_served_at_once(machine_with: MachineWith) -> None:
@@ -147,7 +148,6 @@ def test_a_match_that_has_passed_is_served_at_once(machine_with: MachineWith) ->
         rises = _rises(Trace(machine.events(), board.mcu))
 
     gaps = [after - before for before, after in pairwise(rises)]
-    assert len(rises) > 500
-    # At worst the wait of 42 000 cycles and an interval of 40 000 before it; a lap is 65 536 more.
-    assert max(gaps) <= 42_000 + 40_000 + 1_000
-    assert sum(gap > 41_000 for gap in gaps) >= 20  # it did wait
+    late = [after for before, after in pairwise(gaps) if before > 40_000 + 2_000]
+    assert len(late) >= 20  # steps that came more than three new intervals after they were due
+    assert max(late) <= 640
