@@ -37,11 +37,11 @@ def broken_pulses(
     )
     rises = [cycle for cycle, level in step if level]
     yield from _wrong_counts(runs, edges, rises)
-    yield from _wrong_widths(pulse, step)
+    yield from wrong_widths(pulse, step)
     yield from _wrong_turns(scene, [change for change in direction if change[0] > begin], turns)
-    yield from _wrong_directions(pulse, direction, rises)
+    yield from wrong_directions(pulse, direction, rises)
     for enable in enables:
-        yield from _wrong_enables(pulse, enable, rises)
+        yield from wrong_enables(pulse, enable, rises)
 
 
 def _changes(states: Sequence[PortState], bit: PortBit) -> Iterator[Change]:
@@ -72,7 +72,7 @@ def _wrong_counts(
         yield f"{len(rises) - inside} pulses on STEP outside the step interrupt"
 
 
-def _wrong_widths(pulse: PulseFacts, step: Sequence[Change]) -> Iterator[str]:
+def wrong_widths(pulse: PulseFacts, step: Sequence[Change]) -> Iterator[str]:
     """
     Yield where STEP is not HIGH or LOW as long as the driver needs, or HIGH much longer.
     """
@@ -108,7 +108,7 @@ def _wrong_turns(scene: Scene, seen: Sequence[Change], turns: Sequence[Turn]) ->
             return
 
 
-def _wrong_directions(
+def wrong_directions(
     pulse: PulseFacts, direction: Sequence[Change], rises: Sequence[int]
 ) -> Iterator[str]:
     """
@@ -122,7 +122,7 @@ def _wrong_directions(
             yield f"DIR changes {rises[place] - cycle} cycles before STEP rises, at cycle {cycle}"
 
 
-def _wrong_enables(
+def wrong_enables(
     pulse: PulseFacts, enable: Sequence[Change], rises: Sequence[int]
 ) -> Iterator[str]:
     """
