@@ -182,6 +182,28 @@ MUTANTS = (
         spec="uno_servo_beside",
     ),
     Mutant(
+        "a new TOP that CTC gets in mid-interval",
+        "timings/ctc.j2",
+        "{{ motor.timer.timsk }} = _BV({{ motor.timer.toie }});\n}",
+        "{{ motor.timer.timsk }} = _BV({{ motor.timer.toie }});\n"
+        "} else {\n  {{ motor.timer.ocra }} = setting.top;\n}",
+        spec="mega_ramps_z",
+    ),
+    Mutant(
+        "a prescaler that CTC keeps",
+        "timings/ctc.j2",
+        "if (({{ timer.tccrb }} & 7) != next.select) {",
+        "if (next.select == 0) {",
+        spec="mega_ramps_z",
+    ),
+    Mutant(
+        "a compare match of CTC that still waits after a stop",
+        "macros/wide_timer.j2",
+        "{{ timer.tifr }} = _BV({{ timer.tov }});",
+        "",
+        spec="mega_ramps_z",
+    ),
+    Mutant(
         "a pulse of the interrupt's rare way that is too short",
         "kernels/pulse.j2",
         "{{ motor.kernel.high_wait }}",
@@ -193,13 +215,6 @@ MUTANTS = (
         "kernels/pulse.j2",
         "{{ motor.name }}Point(mode);",
         "",
-        spec="mega_ramps_z",
-    ),
-    Mutant(
-        "a direction that is written when the step is made already",
-        "kernels/pulse.j2",
-        "{{ motor.kernel.fall }}\n",
-        "{{ motor.kernel.fall }}\n  {{ motor.name }}Point(mode);\n",
         spec="mega_ramps_z",
     ),
     Mutant(

@@ -2,12 +2,14 @@
 STEP, DIR and ENABLE at the pins: a driver that wakes up slowly, DIR between two steps, the judges.
 """
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
 from stepgen import api
+from stepgen.devices import DRIVERS, PulseTimes
 from stepgen.reference.pulses import PulseFacts
 from stepgen.verify import pulses
 from stepgen.verify.bench import Call, CallKind, Loop
@@ -121,6 +123,48 @@ def test_dir_keeps_its_distance_though_a_step_is_due(
     nearest = min(abs(rise - turn) for turn in turns for rise in rises)
     assert len(turns) == 2 * 140 - 1
     assert nearest < 150  # the sweep did come near
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"step_high_ns": 300}, "cycles long, not 16 to"),
+        ({"enable_ns": 0}, "no step interrupt"),
+        ({"dir_hold_ns": 0, "dir_setup_ns": 0}, "DIR changes"),
+    ],
+)
+def test_a_plan_with_wrong_times_is_caught(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wrong: dict[str, int], words: str
+) -> None:
+    """
+    The judge reads the driver's times by itself: what the planner makes too short it sees.
+    """
+    slow = PulseTimes(1_000, 1_000, 20_000, 20_000, 1_000_000)
+    for module, times in (
+        ("plan.drives.step_dir", replace(slow, **wrong)),
+        ("reference.pulses", slow),
+    ):
+        chip = replace(DRIVERS["a4988"], times=times)
+        monkeypatch.setattr(f"stepgen.{module}.DRIVERS", {"a4988": chip})
+    actions: list[Action] = []
+    for offset in range(0, 300, 10):
+        actions += [
+            Call(CallKind.SET_SPEED, control=DRIVE, top=2_048),
+            Wait(20_000 + 3 * 2_048 - 150 + offset),
+            Call(CallKind.SET_SPEED, control=BACK, top=2_048),
+            Wait(2_048),
+        ]
+    outcome = _run(
+        tmp_path,
+        actions,
+        board="uno",
+        driver="a4988",
+        pins=NEAR,
+        timing="fast-pwm",
+        motion="constant",
+    )
+
+    assert any(words in finding for finding in outcome.findings), outcome.findings
 
 
 def test_the_judge_measures_widths() -> None:
