@@ -32,7 +32,7 @@ class Mutant:
 MUTANTS = (
     Mutant(
         "TOP for TOP - 1",
-        "timings/fast_pwm.j2",
+        "macros/wide_timer.j2",
         "static_cast<uint16_t>(period - 1)",
         "static_cast<uint16_t>(period)",
     ),
@@ -75,7 +75,7 @@ MUTANTS = (
     ),
     Mutant(
         "an overflow that still waits after a stop",
-        "timings/fast_pwm.j2",
+        "macros/wide_timer.j2",
         "{{ timer.tifr }} = _BV({{ timer.tov }});",
         "",
     ),
@@ -177,8 +177,8 @@ MUTANTS = (
     Mutant(
         "a change of speed that acts in the middle of an interval",
         "timings/compare.j2",
-        "{{ motor.name }}RunTimer();\n}\n",
-        "{{ motor.name }}RunTimer();\n} else {\n  motion.now.last = motion.next.last;\n}\n",
+        'RunTimer();") | block(2) }}\n}\n',
+        'RunTimer();") | block(2) }}\n} else {\n  motion.now.last = motion.next.last;\n}\n',
         spec="uno_servo_beside",
     ),
     Mutant(
