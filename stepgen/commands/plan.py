@@ -14,7 +14,7 @@ from stepgen.commands import plan_options as options
 from stepgen.commands.dump import plain
 from stepgen.commands.plan_rates import show_rates
 from stepgen.commands.report import print_tables, say
-from stepgen.plan.coils import CoilDrive
+from stepgen.plan.kernels import Drive
 from stepgen.plan.model import MotorPlan, Plan
 
 EXAMPLE = (
@@ -131,14 +131,16 @@ def _period(cycles: int, clock_hz: int) -> str:
 
 def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
     path = motor.hot_path
-    yield ("drive", f"{motor.drive.title}, {motor.drive.sequence} steps")
+    yield ("drive", f"{motor.drive.title}, {motor.drive.steps_text}")
     yield ("wires", "\n".join(_wires(motor.drive)))
-    yield ("phases", " ".join(_digits(phase) for phase in motor.drive.phases))
+    yield from motor.drive.facts
     yield ("ports", f"{motor.port_letters}, {'owned' if motor.owns_ports else 'shared'}")
     yield ("kernel", motor.kernel.kind)
     yield ("timer", f"{motor.timing.timer.number}, {motor.timing.kind}, {motor.timing.vector}")
     yield ("motion", motor.motion.kind)
     yield ("steps per turn", _turn(motor))
+    if motor.steps_per_mm:
+        yield ("steps per mm", f"{float(motor.steps_per_mm):.10g}")
     yield ("at rest", "coils off" if motor.releases_at_rest else "coils hold")
     yield ("step interrupt", f"{path.usual_cycles} cycles, response to RETI")
     if path.lap_cycles:
@@ -153,16 +155,13 @@ def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
     )
 
 
-def _wires(drive: CoilDrive) -> Iterable[str]:
-    enable = ", enable of two shields" if drive.shared_enables else ", enable"
-    roles = {"": drive.wires, enable: drive.enables, ", stays LOW": drive.quiet}
-    for role, wires in roles.items():
-        for wire in wires:
-            yield f"{wire.signal}: {wire.pin.label} ({wire.pin.bit.name}){role}"
-
-
-def _digits(phase: tuple[bool, ...]) -> str:
-    return "".join(str(int(high)) for high in phase)
+def _wires(drive: Drive) -> Iterable[str]:
+    enable = ", shared enable" if drive.shared_enables else ", enable"
+    for wire in drive.every_wire:
+        active = ", active LOW" if wire.active_low else ""
+        role = f"{enable}{active}" if wire in drive.enables else ""
+        quiet = ", stays LOW" if wire in drive.quiet else ""
+        yield f"{wire.signal}: {wire.pin.label} ({wire.pin.bit.name}){role}{quiet}"
 
 
 def _turn(motor: MotorPlan) -> str:

@@ -3,6 +3,7 @@ What datasheets and boards say: chips, ports, timers, vectors, pins, and other l
 """
 
 from stepgen.devices.catalogue import boards, find_board
+from stepgen.devices.drivers import DRIVERS, PulseTimes, StepDriver
 from stepgen.devices.interrupts import (
     INTERRUPTS,
     MILLIS,
@@ -28,10 +29,13 @@ from stepgen.devices.model import (
     Timer16,
     Vector,
 )
+from stepgen.devices.sockets import SHIELDS, Socket, SocketShield
 
 __all__ = [
+    "DRIVERS",
     "INTERRUPTS",
     "MILLIS",
+    "SHIELDS",
     "SKETCH_LIBRARIES",
     "UNBOUND",
     "Board",
@@ -41,8 +45,12 @@ __all__ = [
     "Pin",
     "Port",
     "PortBit",
+    "PulseTimes",
     "Register",
     "SketchLibrary",
+    "Socket",
+    "SocketShield",
+    "StepDriver",
     "Timer",
     "Timer8",
     "Timer16",

@@ -7,12 +7,11 @@ What no motor of the library can do has no name in it.
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from stepgen.library import lengths
 from stepgen.plan.model import MotorPlan, Plan
 
 _CHANGING = frozenset({"update-events"})
 _ALL = frozenset({"constant", "update-events"})
-_TELLS_MISSED = frozenset({"compare"})
-_ALL_TIMINGS = frozenset({"fast-pwm", "compare"})
 
 
 @dataclass(frozen=True)
@@ -21,7 +20,6 @@ class _Name:
     value: int
     remark: str
     motions: frozenset[str] = _ALL
-    timings: frozenset[str] = _ALL_TIMINGS
 
 
 @dataclass(frozen=True)
@@ -57,12 +55,7 @@ _STATUS_BITS = (
     _Name("MOTOR_STAT_REACHED", 0x10, "at the end point, or stopped"),
     _Name("MOTOR_STAT_REACH_CALLED", 0x20, "and its callback was told", _CHANGING),
     _Name("MOTOR_STAT_SPIN_FIXED", 0x40, "running at a speed that stays"),
-    _Name(
-        "MOTOR_STAT_MISSED",
-        0x80,
-        "a step came too late: see ReadMissed",
-        timings=_TELLS_MISSED,
-    ),
+    _Name("MOTOR_STAT_MISSED", 0x80, "a step came too late: see ReadMissed"),
 )
 _CODES = (
     _Name("MOTOR_ERROR_TOO_FAST", -1, "below MOTOR_MIN_TOP"),
@@ -77,7 +70,10 @@ _CODES = (
     _Name("MOTOR_ERROR_RUNNING", -5, "not while the motor runs"),
     _Name("MOTOR_WARN_NOT_ENABLED", 1, "a speed without MOTOR_CTRL_DRV_EN: the motor stops"),
 )
-_FUNCTIONS = ("ShieldInit", "SetSpeed", "ReadStatus", "ReadPosition", "Hold", "Release")
+_FUNCTIONS = ("ShieldInit", "SetSpeed", "ReadStatus", "ReadPosition")
+_SWITCH_CODES = {"MOTOR_ERROR_RUNNING"}
+_SWITCH_FUNCTIONS = ("Hold", "Release")
+_MISSED_BITS = {"MOTOR_STAT_MISSED"}
 _MISSED_FUNCTIONS = ("ReadMissed",)
 _CHANGING_FUNCTIONS = ("TimerUpdateCheck", "CallBackPositionReached", "CallBackFault")
 _RANGE = ("MOTOR_MIN_TOP", "MOTOR_MAX_TOP")
@@ -112,8 +108,10 @@ def function_names(plan: Plan) -> tuple[str, ...]:
     for motor in plan.motors:
         parts: tuple[str, ...] = _FUNCTIONS
         parts += _MISSED_FUNCTIONS if tells_missed(motor) else ()
+        parts += _SWITCH_FUNCTIONS if motor.switches_current else ()
         parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
         parts += ("StepsForTurns",) if motor.steps_per_turn is not None else ()
+        parts += lengths.FUNCTIONS if motor.steps_per_mm is not None else ()
         names += [f"{motor.name}{part}" for part in parts]
         names += [dump_name(motor)] if motor.motion.dumps else []
     return tuple(names)
@@ -123,7 +121,7 @@ def tells_missed(motor: MotorPlan) -> bool:
     """
     Tell whether *motor* counts the steps that come too late.
     """
-    return motor.timing.kind in _TELLS_MISSED
+    return motor.hot_path.overrun_cycles is not None
 
 
 def dump_name(motor: MotorPlan) -> str:
@@ -143,8 +141,12 @@ def constant_names(plan: Plan) -> tuple[str, ...]:
 
 def _used(names: Iterable[_Name], plan: Plan) -> tuple[_Name, ...]:
     kinds = {motor.motion.kind for motor in plan.motors}
-    timings = {motor.timing.kind for motor in plan.motors}
-    return tuple(name for name in names if name.motions & kinds and name.timings & timings)
+    unused: set[str] = set()
+    if not any(motor.switches_current for motor in plan.motors):
+        unused |= _SWITCH_CODES
+    if not any(tells_missed(motor) for motor in plan.motors):
+        unused |= _MISSED_BITS
+    return tuple(name for name in names if name.motions & kinds and name.name not in unused)
 
 
 def _definitions(kind: str, names: tuple[_Name, ...]) -> tuple[Definition, ...]:

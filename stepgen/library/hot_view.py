@@ -40,7 +40,7 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
         '[sreg] "I"(_SFR_IO_ADDR(SREG))',
         _place_operand("scratch", storage.scratch),
         _place_operand("count", storage.count),
-        _place_operand("state", storage.state),
+        *((_place_operand("state", storage.state),) if motor.kernel.state_note else ()),
         f'[mode] "i"(&{motor.name}Motion.mode)',
         f'[think] "I"({THINK_BIT})',
     ]
@@ -59,10 +59,7 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
     kernel = motor.kernel
     if isinstance(kernel, Ring):
         operands.append(f'[ring] "i"({motor.name}Ring)')
-        registers = [share.port.port for share in kernel.ports]
-    else:
-        registers = [kernel.port.pin]
-    for index, register in enumerate(registers):
+    for index, register in enumerate(kernel.registers):
         operands.append(_register_operand(f"port{index}", register))
     *others, last = operands
     return (*(Line(text, ",") for text in others), Line(last, ""))

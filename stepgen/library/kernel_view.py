@@ -4,23 +4,9 @@ The view of a kernel: its tables and port writes as finished C++ text.
 
 from dataclasses import dataclass
 
-from stepgen.devices import Mcu
 from stepgen.library.text import comment_lines, hexadecimal, listed
-from stepgen.plan.coils import Wire, bits_by_port
 from stepgen.plan.kernels import Kernel, PortWrite, Ring, Toggle
-
-
-@dataclass(frozen=True)
-class Bits:
-    """
-    Bits of one port: its registers, the mask and what hangs on it.
-    """
-
-    port: str
-    ddr: str
-    mask: str
-    inverse: str
-    comment: str
+from stepgen.plan.pulses import Pulse
 
 
 @dataclass(frozen=True)
@@ -51,35 +37,37 @@ class RingView:
     phase_bytes: int
 
 
-KernelView = ToggleView | RingView
+@dataclass(frozen=True)
+class PulseView:
+    """
+    What the partial ``pulse`` prints.
+    """
+
+    legend: tuple[str, ...]
+    rise: str
+    fall: str
+    high_wait: str
+    low_wait: str
+    forward: str
+    backward: str
+    hold_wait: str
+    setup_wait: str
+
+
+KernelView = ToggleView | RingView | PulseView
 
 
 def kernel_view(kernel: Kernel) -> KernelView:
     """
     Return the text of *kernel*.
     """
-    return _toggle_view(kernel) if isinstance(kernel, Toggle) else _ring_view(kernel)
-
-
-def bit_groups(wires: tuple[Wire, ...], mcu: Mcu) -> tuple[Bits, ...]:
-    """
-    Return *wires* as one group of bits for each port.
-    """
-    groups = []
-    for letter, mask in bits_by_port(wires).items():
-        port = mcu.port(letter)
-        here = [wire for wire in wires if wire.pin.bit.port == letter]
-        signals = ", ".join(wire.signal for wire in here)
-        groups.append(
-            Bits(
-                port=port.port.name,
-                ddr=port.ddr.name,
-                mask=hexadecimal(mask),
-                inverse=hexadecimal(~mask & 0xFF),
-                comment=f"  // {signals}",
-            )
-        )
-    return tuple(groups)
+    match kernel:
+        case Toggle():
+            return _toggle_view(kernel)
+        case Ring():
+            return _ring_view(kernel)
+        case Pulse():
+            return _pulse_view(kernel)
 
 
 def _toggle_view(kernel: Toggle) -> ToggleView:
@@ -133,3 +121,39 @@ def _write(index: int, write: PortWrite) -> str:
         "set": f"{name} |= {value};",
         "merge": f"{name} = ({name} & {hexadecimal(~write.mask & 0xFF)}) | {value};",
     }[write.operation]
+
+
+def _pulse_view(kernel: Pulse) -> PulseView:
+    cycles = kernel.cycles
+    name, mask = kernel.port.port.name, 1 << kernel.bit
+    rise, fall = _bit_changes(name, mask)
+    if kernel.toggles:
+        rise = fall = f"{kernel.port.pin.name} = {hexadecimal(mask)};"
+    backward, forward = _bit_changes(kernel.direction_port.port.name, 1 << kernel.direction.bit)
+    legend = (
+        f"A step is a pulse on STEP, HIGH for {cycles.high} cycles at least and LOW for "
+        f"{cycles.low} before the next. DIR is written {cycles.setup} cycles before STEP rises, or "
+        f"earlier, and {cycles.hold} after it, or later."
+    )
+    return PulseView(
+        legend=comment_lines(legend),
+        rise=rise,
+        fall=fall,
+        high_wait=_wait(cycles.high - kernel.fall_cycles),
+        low_wait=_wait(kernel.low_wait_cycles),
+        forward=forward,
+        backward=backward,
+        hold_wait=_wait(kernel.hold_wait_cycles),
+        setup_wait=_wait(kernel.setup_wait_cycles),
+    )
+
+
+def _bit_changes(port: str, mask: int) -> tuple[str, str]:
+    """
+    Return the statements that set and clear *mask*.
+    """
+    return f"{port} |= {hexadecimal(mask)};", f"{port} &= {hexadecimal(~mask & 0xFF)};"
+
+
+def _wait(cycles: int) -> str:
+    return f"__builtin_avr_delay_cycles({cycles});" if cycles > 0 else ""

@@ -6,8 +6,17 @@ from dataclasses import dataclass
 
 from stepgen.library.api_view import dump_name, tells_missed
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
-from stepgen.library.kernel_view import Bits, KernelView, bit_groups, kernel_view
-from stepgen.library.prose import isr_contract, release_comment, rest_comment, summary, wiring
+from stepgen.library.kernel_view import KernelView, kernel_view
+from stepgen.library.lengths import Lengths, lengths
+from stepgen.library.port_view import Bits, Change, bit_groups, switched
+from stepgen.library.prose import (
+    init_comment,
+    isr_contract,
+    release_comment,
+    start_comment,
+    summary,
+    wiring,
+)
 from stepgen.library.sharing import Need, need_of, sharing_note
 from stepgen.library.text import comment_lines
 from stepgen.library.timings import TimerView, timer_view
@@ -47,9 +56,11 @@ class MotorView:
     title: str
     summary: str
     wiring: tuple[str, ...]
-    rest_comment: str
+    init_comment: tuple[str, ...]
+    start_comment: tuple[str, ...]
     release_comment: tuple[str, ...]
     turns: Turns | None
+    lengths: Lengths | None
     kernel_name: str
     timing_name: str
     motion_name: str
@@ -64,10 +75,14 @@ class MotorView:
     state: str
     variables: tuple[Named, ...]
     releases: bool
+    switches: bool
+    holds: bool
+    wake_top: str
     need: Need | None
-    enables: tuple[Bits, ...]
-    released: tuple[Bits, ...]
-    low_at_start: tuple[Bits, ...]
+    sharers: tuple[str, ...]
+    switch_on: tuple[Change, ...]
+    switch_off: tuple[Change, ...]
+    at_start: tuple[Change, ...]
     outputs: tuple[Bits, ...]
     isr_contract: tuple[str, ...]
     usual: tuple[Line, ...]
@@ -92,9 +107,11 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         title=motor.name[0].upper() + motor.name[1:],
         summary=summary(motor),
         wiring=(*wiring(motor, board), *comment_lines(sharing_note(motor, need))),
-        rest_comment=rest_comment(motor, need),
+        init_comment=init_comment(motor),
+        start_comment=start_comment(motor, need, board.f_cpu_hz),
         release_comment=release_comment(need),
         turns=_turns(motor),
+        lengths=lengths(motor, board.f_cpu_hz),
         kernel_name=motor.kernel.kind,
         timing_name=module_name(motor.timing.kind),
         motion_name=module_name(motor.motion.kind),
@@ -110,9 +127,13 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         variables=_variables(motor),
         releases=motor.releases_at_rest,
         need=need,
-        enables=bit_groups(drive.enables, mcu),
-        released=bit_groups(drive.released, mcu),
-        low_at_start=bit_groups(tuple(lows), mcu),
+        sharers=need.others if need else (),
+        switches=motor.switches_current,
+        holds=motor.switches_current and not motor.releases_at_rest,
+        wake_top=f"{motor.wake_cycles}UL",
+        switch_on=switched(drive.enables, mcu, active=True),
+        switch_off=switched(drive.released, mcu, active=False),
+        at_start=switched(tuple(lows), mcu, active=False),
         outputs=bit_groups(drive.every_wire, mcu),
         isr_contract=isr_contract(motor),
         usual=instruction_lines(motor.hot_path.usual),
@@ -156,5 +177,5 @@ def _variables(motor: MotorPlan) -> tuple[Named, ...]:
     return tuple(
         Named(name, comment=comment)
         for name, (place, comment) in comments.items()
-        if place.register is None
+        if place.register is None and comment
     )

@@ -5,24 +5,14 @@ Sentences about a plan, for comments and documents: what is wired where, and who
 from stepgen.devices import Board
 from stepgen.library.sharing import Need, sharing_rule
 from stepgen.library.text import comment_lines, frequency, listed
-from stepgen.plan.coils import CoilDrive
 from stepgen.plan.model import MotorPlan, Plan
-
-
-def sequence_text(drive: CoilDrive) -> str:
-    """
-    Return what the motor makes at a time, such as ``half steps``.
-    """
-    if drive.sequence == "table":
-        return f"own table of {len(drive.phases)} patterns"
-    return f"{drive.sequence} steps"
 
 
 def summary(motor: MotorPlan) -> str:
     """
     Return driver, sequence and timer of *motor* in a few words.
     """
-    return f"{motor.drive.title}, {sequence_text(motor.drive)}, timer {motor.timing.timer.number}"
+    return f"{motor.drive.title}, {motor.drive.steps_text}, timer {motor.timing.timer.number}"
 
 
 def title(plan: Plan, sentence: str) -> tuple[str, ...]:
@@ -103,17 +93,43 @@ def _pwm(motor: MotorPlan, board: Board) -> str:
     )
 
 
-def rest_comment(motor: MotorPlan, need: Need | None) -> str:
+def init_comment(motor: MotorPlan) -> tuple[str, ...]:
+    """
+    Return what the function that prepares the motor does, as lines of a comment.
+    """
+    coils = ", with the coils off" if motor.switches_current else ""
+    return comment_lines(
+        f"Makes the pins outputs{coils}, at position 0. Call it once, from setup()."
+    )
+
+
+def start_comment(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> tuple[str, ...]:
+    """
+    Return what happens at a start from rest, in mid-run and at the end, as lines of a comment.
+    """
+    energised = "the coils are energised at once and " if motor.switches_current else ""
+    wake_ms = motor.wake_cycles / f_cpu_hz * 1000
+    wake = f", {wake_ms:.6g} ms at least, since the driver has to wake up" if wake_ms else ""
+    return comment_lines(
+        f"From rest {energised}the first step comes one interval later{wake}. While the motor "
+        "runs, the interval in progress ends as it was; the step at its end is the first of the "
+        f"new motion. {_rest_comment(motor, need)}"
+    )
+
+
+def _rest_comment(motor: MotorPlan, need: Need | None) -> str:
     """
     Return what the coils do at the end of a move.
     """
     if motor.releases_at_rest and need:
         return (
-            "One interval after the last step the coils go off,\n"
-            f"// unless {need.other} needs the current."
+            "One interval after the last step the coils go off, "
+            f"unless {need.other} needs the current."
         )
     if motor.releases_at_rest:
         return "At its end the coils go off one interval after the last step."
+    if not motor.switches_current:
+        return "The coils always have current: there is no ENABLE."
     return "At its end the coils stay on and hold the position."
 
 
@@ -147,7 +163,7 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
     return comment_lines(
         f"Timer {timing.timer.number} {timing.event}: one step, {path.usual_cycles} cycles from "
         f"the interrupt's response to RETI{clock}; at most {motor.isr_bound_cycles} when it{late} "
-        f"goes on in {motor.handler}. The wires change {path.edge_cycles} cycles after "
+        f"goes on in {motor.handler}. {motor.drive.edge_note} {path.edge_cycles} cycles after "
         f"{timing.instant} ({path.boundary_edge_cycles} before a boundary).{laps} It writes port "
         f"{ports} and nothing else that the sketch can see. Behind each instruction stand its "
         "cycles."
@@ -173,5 +189,5 @@ def paragraph(plan: Plan) -> str:
     """
     Return the second sentence of library.properties.
     """
-    motors = "; ".join(f"{m.name}: {m.drive.title}, {sequence_text(m.drive)}" for m in plan.motors)
+    motors = "; ".join(f"{m.name}: {m.drive.title}, {m.drive.steps_text}" for m in plan.motors)
     return f"Made by stepgen for the {plan.board.title}: {motors}."

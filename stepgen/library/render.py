@@ -111,8 +111,9 @@ def _partials(made: Environment, view: LibraryView) -> dict[str, object]:
     def modules(folder: str, names: set[str]) -> dict[str, object]:
         return {name: made.get_template(f"{folder}/{name}.j2").module for name in sorted(names)}
 
+    timings = {name for m in view.motors for name in (m.timing_name, m.timer.shared_by)}
     return {
         "kernels": modules("kernels", {motor.kernel_name for motor in view.motors}),
-        "timings": modules("timings", {motor.timing_name for motor in view.motors}),
+        "timings": modules("timings", timings),
         "motions": modules("motions", {motor.motion_name for motor in view.motors}),
     }

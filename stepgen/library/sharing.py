@@ -11,12 +11,16 @@ from stepgen.plan.model import MotorPlan, Plan
 @dataclass(frozen=True)
 class Need:
     """
-    A motor's bit in the variable that says who needs the shared enables, and the other motor.
+    A motor's bit in the variable that says who needs the shared enables, and the other motors.
+
+    *anybody* is an expression: whether any of them all needs them.
     """
 
     mask: str
     inverse: str
     other: str
+    others: tuple[str, ...]
+    anybody: str
 
 
 def need_of(motor: MotorPlan, plan: Plan) -> Need | None:
@@ -27,8 +31,14 @@ def need_of(motor: MotorPlan, plan: Plan) -> Need | None:
     if motor.name not in names:
         return None
     mask = 1 << names.index(motor.name)
-    others = [name for name in names if name != motor.name]
-    return Need(hexadecimal(mask), hexadecimal(~mask & 0xFF), listed(others))
+    together = _with_its_enables(motor, plan)
+    others = [name for name in together if name != motor.name]
+    everyone = sum(1 << names.index(name) for name in together)
+    anybody = "enablesNeeded"
+    if len(together) < len(names):
+        anybody += f" & {hexadecimal(everyone)}"
+    inverse = hexadecimal(~mask & 0xFF)
+    return Need(hexadecimal(mask), inverse, listed(others, "or"), tuple(others), anybody)
 
 
 def needs_comment(plan: Plan) -> tuple[str, ...]:
@@ -70,6 +80,10 @@ def sharing_rule(plan: Plan) -> str:
         f"{_enables(first)} are the enables of both shields: as long as {listed(names, 'or')} "
         "needs current, the coils of both have it, also those of a motor that was released."
     )
+
+
+def _with_its_enables(motor: MotorPlan, plan: Plan) -> list[str]:
+    return [other.name for other in plan.motors if other.drive.released == motor.drive.released]
 
 
 def _sharers(plan: Plan) -> list[str]:

@@ -26,11 +26,14 @@ from stepgen.plan.model import Plan
 class MotionStruct:
     """
     The struct of a motion, with the fields of a timing; its name begins with *prefix*.
+
+    *elapsed_type* holds the ticks until a timer is set, of each motor that has the struct.
     """
 
     motion_name: str
     timing_name: str
     prefix: str
+    elapsed_type: str
 
 
 @dataclass(frozen=True)
@@ -112,7 +115,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         think_bit=THINK_BIT,
         releases=any(motor.releases for motor in motors),
         dumps=any(motor.motion.dumps for motor in plan.motors),
-        timing_names=tuple(sorted({motor.timing_name for motor in motors})),
+        timing_names=tuple(sorted({motor.timer.shared_by for motor in motors})),
         needs_comment=needs_comment(plan),
         motors=motors,
         keywords=_keywords(plan),
@@ -125,8 +128,12 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
 
 
 def _motion_structs(motors: tuple[MotorView, ...]) -> tuple[MotionStruct, ...]:
-    pairs = {(m.motion_name, m.timing_name): m.timer.struct_prefix for m in motors}
-    return tuple(MotionStruct(*pair, prefix) for pair, prefix in sorted(pairs.items()))
+    structs: dict[tuple[str, str], MotionStruct] = {}
+    for motor in sorted(motors, key=lambda motor: motor.timer.elapsed_type):  # uint8_t comes last
+        pair = (motor.motion_name, motor.timer.shared_by)
+        kind = (motor.timer.struct_prefix, motor.timer.elapsed_type)
+        structs.setdefault(pair, MotionStruct(*pair, *kind))
+    return tuple(struct for _, struct in sorted(structs.items()))
 
 
 def _claims(plan: Plan) -> tuple[Named, ...]:

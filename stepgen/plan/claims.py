@@ -6,14 +6,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from stepgen.devices import Board, Pin
-from stepgen.plan.coils import CoilDrive
 from stepgen.plan.faults import Faults
+from stepgen.plan.kernels import Drive
 from stepgen.plan.model import TimerPlan
 from stepgen.plan.uses import ANALOG_WRITE, Use, pwm_channel
 
 _VECTOR = "vector "
 _CORE_TIMER = "as the core sets it up"
-_SHARED_ENABLE = "as an enable of two shields"
 _EXAMPLE_PINS = 4
 
 
@@ -41,7 +40,7 @@ class Claim:
     sharing: str = ""
 
 
-def drive_claims(motor: str, drive: CoilDrive, faults: Faults) -> Iterable[Claim]:
+def drive_claims(motor: str, drive: Drive, faults: Faults) -> Iterable[Claim]:
     """
     Return what *drive* takes: its pins.
     """
@@ -53,7 +52,7 @@ def drive_claims(motor: str, drive: CoilDrive, faults: Faults) -> Iterable[Claim
             faults.at("drive"),
             drive.pins_way_out,
             role=f", as {wire.signal}",
-            sharing=_SHARED_ENABLE if shared else "",
+            sharing=f"as an enable of {drive.kind}" if shared else "",
         )
 
 

@@ -5,21 +5,12 @@ Coil drives: wires, phase tables, and the order in which ports are written.
 from dataclasses import dataclass
 from fractions import Fraction
 
-from stepgen.devices import Pin, Port
+from stepgen.devices import Port
+from stepgen.plan.wires import Wire, bits_by_port
 
 Pattern = tuple[bool, ...]
 
 FULL_STEPS_PER_CYCLE = 4  # a two-phase motor repeats its coil currents after four full steps
-
-
-@dataclass(frozen=True)
-class Wire:
-    """
-    One signal of a drive: what it is called there, and the pin that carries it.
-    """
-
-    signal: str
-    pin: Pin
 
 
 @dataclass(frozen=True)
@@ -52,6 +43,9 @@ class CoilDrive:
     shared_enables: bool = False
     pins_way_out: str = "give one of them other pins"
 
+    edge_note = "The wires change"
+    enable_cycles = 0
+
     @property
     def every_wire(self) -> tuple[Wire, ...]:
         """
@@ -66,6 +60,23 @@ class CoilDrive:
         """
         return Fraction(len(self.phases), FULL_STEPS_PER_CYCLE)
 
+    @property
+    def steps_text(self) -> str:
+        """
+        Return what the motor makes at a time, such as ``half steps``.
+        """
+        if self.sequence == "table":
+            return f"own table of {len(self.phases)} patterns"
+        return f"{self.sequence} steps"
+
+    @property
+    def facts(self) -> tuple[tuple[str, str], ...]:
+        """
+        Return what ``stepgen plan`` shows of it beside the wires.
+        """
+        digits = ("".join(str(int(high)) for high in phase) for phase in self.phases)
+        return (("phases", " ".join(digits)),)
+
 
 @dataclass(frozen=True)
 class PortPatterns:
@@ -76,17 +87,6 @@ class PortPatterns:
     port: Port
     mask: int
     values: tuple[int, ...]
-
-
-def bits_by_port(wires: tuple[Wire, ...]) -> dict[str, int]:
-    """
-    Return the mask of *wires* on each port that they use, by the port's letter.
-    """
-    masks: dict[str, int] = {}
-    for wire in wires:
-        bit = wire.pin.bit
-        masks[bit.port] = masks.get(bit.port, 0) | 1 << bit.bit
-    return dict(sorted(masks.items()))
 
 
 def patterns_by_port(drive: CoilDrive, ports: tuple[Port, ...]) -> tuple[PortPatterns, ...]:

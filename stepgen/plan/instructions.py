@@ -107,3 +107,30 @@ def allocate(mcu: Mcu, names: Iterable[str]) -> tuple[Storage, ...]:
         else Storage(Place(f"{name}Count"), Place(f"{name}State"), scratch)
         for index, name in enumerate(names)
     )
+
+
+@dataclass(frozen=True)
+class Access:
+    """
+    How a register is read and written: by IN and OUT, or by LDS and STS.
+    """
+
+    load: str
+    store: str
+    cycles: int
+
+
+def access(register: Register) -> Access:
+    """
+    Return the shortest way to *register*.
+    """
+    if register.in_io:
+        return Access("in    ", "out   ", 1)
+    return Access("lds   ", "sts   ", 2)
+
+
+def total_cycles(instructions: Iterable[Instruction]) -> int:
+    """
+    Return the cycles of *instructions*, one after the other.
+    """
+    return sum(instruction.cycles for instruction in instructions)

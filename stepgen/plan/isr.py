@@ -5,13 +5,12 @@ The hot path is written as instructions with their cycles (AVR instruction set m
 its length is known before anything is compiled.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from stepgen.devices import Mcu
-from stepgen.plan.instructions import Gate, Instruction, Storage
+from stepgen.plan.instructions import Gate, Instruction, Storage, total_cycles
 from stepgen.plan.kernels import Kernel
-from stepgen.plan.step_code import saved_registers, step_code
+from stepgen.plan.step_code import end_code, saved_registers, step_code
 
 _CLOCK_TAKEN_CYCLES = 1  # SBRC that does not skip and RJMP, against SBRC that does
 _VECTOR_JUMP_CYCLES = 3  # the JMP in the vector table
@@ -61,7 +60,7 @@ class HotPath:
         overrun_cycles: How late an interrupt begins, from its flag to the response, where its step
             counts as missed; None where that cannot be told.
         clock_cycles: The same with a look at the clock.
-        edge_cycles: From the timer's flag to the end of the last port write, on the usual way.
+        edge_cycles: From the timer's flag to the end of the write that makes the step, usually.
         boundary_edge_cycles: The same on the boundary's way.
         boundary_entry_cycles: From the flag to the first instruction of the boundary handler.
         think_entry_cycles: The same when it is reached before the step.
@@ -132,27 +131,29 @@ def compose(
     if watches_clock:
         count = (replace(count[0], label="4"), *count[1:])
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
-    until_gate = arrival + _cycles(entry)
-    until_count = until_gate + gate.step_cycles + _cycles(look)
-    until_step = until_count + _cycles(count)
-    until_rare_step = until_step + 1 + _cycles(think)
-    onward = (*look, *count, *step, *leave, Instruction("reti", mcu.response_cycles))
-    usual_cycles = until_gate + gate.step_cycles + _cycles(onward)
-    looked = _CLOCK_TAKEN_CYCLES + _cycles(clock) if watches_clock else 0
+    until_gate = arrival + total_cycles(entry)
+    until_count = until_gate + gate.step_cycles + total_cycles(look)
+    until_step = until_count + total_cycles(count)
+    until_rare_step = until_step + 1 + total_cycles(think)
+    rare_step = (*step, *end_code(kernel, ()))
+    reti = Instruction("reti", mcu.response_cycles)
+    onward = (*look, *count, *step, *end_code(kernel, leave), reti)
+    usual_cycles = until_gate + gate.step_cycles + total_cycles(onward)
+    looked = _CLOCK_TAKEN_CYCLES + total_cycles(clock) if watches_clock else 0
     overrun = gate.overrun_cycles
     due = until_count + looked if watches_clock else until_rare_step + 1
     return HotPath(
         usual=(*entry, *gate.instructions, *onward),
         clock=clock,
-        boundary=(*think, *step, *out),
+        boundary=(*think, *rare_step, *out),
         usual_cycles=usual_cycles,
         lap_cycles=tuple(until_gate + cycles for cycles in gate.lap_cycles),
         overrun_cycles=None if overrun is None else overrun - until_gate,
         clock_cycles=usual_cycles + looked,
         edge_cycles=until_step + _cycles_to_edge(step),
         boundary_edge_cycles=until_rare_step + looked + _cycles_to_edge(step),
-        boundary_entry_cycles=until_rare_step + looked + _cycles(step + out),
-        think_entry_cycles=due + _cycles(out),
+        boundary_entry_cycles=until_rare_step + looked + total_cycles(rare_step + out),
+        think_entry_cycles=due + total_cycles(out),
     )
 
 
@@ -184,14 +185,10 @@ def _clock_watch() -> tuple[tuple[Instruction, ...], tuple[Instruction, ...]]:
     return look, clock
 
 
-def _cycles(instructions: Iterable[Instruction]) -> int:
-    return sum(instruction.cycles for instruction in instructions)
-
-
 def _cycles_to_edge(step: tuple[Instruction, ...]) -> int:
     last = max(i for i, line in enumerate(step) if "%[port" in line.text and _writes(line))
-    return _cycles(step[: last + 1])
+    return total_cycles(step[: last + 1])
 
 
 def _writes(line: Instruction) -> bool:
-    return line.text.startswith(("out", "sts"))
+    return line.text.startswith(("out", "sts", "sbi"))

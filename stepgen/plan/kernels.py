@@ -4,32 +4,13 @@ Kernels: how one step changes the ports. The planner takes the cheapest that is 
 
 from dataclasses import dataclass
 
-from stepgen.devices import Mcu, Port
+from stepgen.devices import Mcu, Port, Register
 from stepgen.plan.coils import CoilDrive, PortPatterns, patterns_by_port
+from stepgen.plan.cycles import HandlerCycles
 from stepgen.plan.faults import Faults
+from stepgen.plan.pulses import Pulse, PulseDrive, pulse_kernel
 
 _RING_BYTES = 256  # a row is named by one byte: its distance from the start of the ring
-
-
-@dataclass(frozen=True)
-class HandlerCycles:
-    """
-    How long the boundary handler takes, with both compilers on both chips.
-
-    The first two are bounds, proven for each program that is verified (stepgen/verify/bounds);
-    the others were measured.
-
-    Args:
-        longest: With everything at once, to the end of RETI.
-        masked: How much longer a call has interrupts off than with a write to one port.
-        to_clock: Until it starts the clock of a timer that it sets anew.
-        to_clock_thinking: The same when it looked at the clock and made the step itself.
-    """
-
-    longest: int
-    masked: int
-    to_clock: int
-    to_clock_thinking: int
 
 
 @dataclass(frozen=True)
@@ -57,6 +38,13 @@ class Toggle:
         Return all bits that step.
         """
         return self.masks[0] | self.masks[1]
+
+    @property
+    def registers(self) -> tuple[Register, ...]:
+        """
+        Return the registers that its instructions name ``port0`` and so on.
+        """
+        return (self.port.pin,)
 
 
 @dataclass(frozen=True)
@@ -101,6 +89,13 @@ class Ring:
         )
 
     @property
+    def registers(self) -> tuple[Register, ...]:
+        """
+        Return the registers that its instructions name ``port0`` and so on.
+        """
+        return tuple(share.port.port for share in self.ports)
+
+    @property
     def row_bytes(self) -> int:
         """
         Return the length of a row.
@@ -122,12 +117,24 @@ class Ring:
         return 1 << (self.size_bytes - 1).bit_length()
 
 
-Kernel = Toggle | Ring
+Drive = CoilDrive | PulseDrive
+Kernel = Toggle | Ring | Pulse
 
 
-def choose_kernel(drive: CoilDrive, mcu: Mcu, *, owned: bool, faults: Faults) -> Kernel | None:
+def choose_kernel(drive: Drive, mcu: Mcu, *, owned: bool, faults: Faults) -> Kernel | None:
     """
     Return the kernel for *drive*; None after reporting that its table is too large.
+    """
+    if isinstance(drive, PulseDrive):
+        return pulse_kernel(drive, mcu, owned=owned)
+    return _coil_kernel(drive, mcu, owned=owned, faults=faults)
+
+
+def _coil_kernel(
+    drive: CoilDrive, mcu: Mcu, *, owned: bool, faults: Faults
+) -> Toggle | Ring | None:
+    """
+    Return the kernel that shows the phases of *drive*.
 
     Toggling never looks at the port, so one stray write of the sketch to a motor's bit would
     stay wrong for ever: it is for ports that the motor owns. The ring writes absolute

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from stepgen.devices import Board, Timer
-from stepgen.plan.coils import CoilDrive
 from stepgen.plan.instructions import Gate, Storage
 from stepgen.plan.isr import HotPath, Motion
-from stepgen.plan.kernels import Kernel
+from stepgen.plan.kernels import Drive, Kernel
 from stepgen.spec import Library
+
+_WAKE_TICKS_CYCLES = 2 * 1024
 
 
 @dataclass(frozen=True)
@@ -135,6 +136,7 @@ class MotorPlan:
         gate: What the timing puts before the step.
         hot_path: The step interrupt.
         steps_per_turn: Steps of its sequence in one turn of the shaft, or None.
+        steps_per_mm: Steps of its sequence, or microsteps, in one millimetre of its way, or None.
         releases_at_rest: Whether the coils go off when it comes to rest.
         owns_ports: Whether the sketch leaves the motor's ports alone.
         wish_steps_per_second: The highest rate that the sketch will ask for, or None.
@@ -142,7 +144,7 @@ class MotorPlan:
 
     name: str
     motion: Motion
-    drive: CoilDrive
+    drive: Drive
     kernel: Kernel
     timing: TimerPlan
     storage: Storage
@@ -150,6 +152,7 @@ class MotorPlan:
     gate: Gate
     hot_path: HotPath
     steps_per_turn: Fraction | None
+    steps_per_mm: Fraction | None
     releases_at_rest: bool
     owns_ports: bool
     wish_steps_per_second: Fraction | None = None
@@ -183,6 +186,23 @@ class MotorPlan:
             + self.kernel.handler.masked
             - (0 if self.timing.is_set_anew else self.motion.masked_setting_cycles)
         )
+
+    @property
+    def switches_current(self) -> bool:
+        """
+        Return whether its coils can be switched off.
+        """
+        return bool(self.drive.released)
+
+    @property
+    def wake_cycles(self) -> int:
+        """
+        Return how long the first interval from rest must be at least; 0 where every one is.
+
+        It is cut off to whole ticks, and its first one can be short: two ticks of 1024 make up.
+        """
+        enable = self.drive.enable_cycles
+        return enable + _WAKE_TICKS_CYCLES if enable > self.timing.smallest_period_cycles else 0
 
     @property
     def port_letters(self) -> str:

@@ -13,12 +13,11 @@ from stepgen.plan.claims import (
     sketch_claims,
     timing_claims,
 )
-from stepgen.plan.coils import CoilDrive
 from stepgen.plan.drives import plan_drive
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Storage, allocate
 from stepgen.plan.isr import compose
-from stepgen.plan.kernels import choose_kernel
+from stepgen.plan.kernels import Drive, choose_kernel
 from stepgen.plan.limits import (
     Chip,
     everything,
@@ -150,7 +149,7 @@ def _at(faults: Faults, motor: str) -> Faults:
     return faults.at("motors", motor)
 
 
-def _drive(loaded: LoadedSpec, motor: str, board: Board, faults: Faults) -> CoilDrive | None:
+def _drive(loaded: LoadedSpec, motor: str, board: Board, faults: Faults) -> Drive | None:
     motors = loaded.spec.motors
     beside = [other.drive for name, other in motors.items() if name != motor]
     return plan_drive(motors[motor].drive, beside, board, _at(faults, motor).at("drive"))
@@ -192,7 +191,7 @@ def free_timers(
 def _claims(
     uses: Mapping[int, Use],
     board: Board,
-    parts: dict[str, tuple[CoilDrive | None, TimerPlan | None]],
+    parts: dict[str, tuple[Drive | None, TimerPlan | None]],
     faults: Faults,
 ) -> Iterable[Claim]:
     free = free_timers(board, uses.values(), (timing for _, timing in parts.values()))
@@ -208,7 +207,7 @@ def _claims(
 def _plan_motor(
     name: str,
     motor: Motor,
-    parts: tuple[CoilDrive | None, TimerPlan | None],
+    parts: tuple[Drive | None, TimerPlan | None],
     storage: Storage,
     context: tuple[Board, Faults],
 ) -> MotorPlan | None:
@@ -217,6 +216,11 @@ def _plan_motor(
     kernel = drive and choose_kernel(
         drive, board.mcu, owned=motor.port == "owned", faults=faults.at("drive")
     )
+    if drive and motor.at_rest == "release" and not drive.released:
+        faults.at("at_rest").report(
+            "the driver has no ENABLE, so that nothing can switch its coils off; add "
+            "`at_rest: hold`, or give `enable` a pin"
+        )
     if not (drive and timing and kernel):
         return None
     # avr-gcc takes a function for an interrupt handler only when it is called __vector...
@@ -236,13 +240,14 @@ def _plan_motor(
             kernel, storage, board.mcu, handler, gate, watches_clock=motion.watches_clock
         ),
         steps_per_turn=_steps_per_turn(motor, drive),
+        steps_per_mm=motor.steps_per_mm,
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",
         wish_steps_per_second=motor.max_steps_per_second,
     )
 
 
-def _steps_per_turn(motor: Motor, drive: CoilDrive) -> Fraction | None:
+def _steps_per_turn(motor: Motor, drive: Drive) -> Fraction | None:
     if motor.steps_per_turn is None:
         return None
     return motor.steps_per_turn.exact * drive.steps_per_full_step

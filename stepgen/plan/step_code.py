@@ -2,18 +2,18 @@
 The fragment of the step interrupt that makes the step, for each kernel.
 """
 
-from dataclasses import dataclass
-
-from stepgen.devices import Port, Register
-from stepgen.plan.instructions import Instruction, Storage
+from stepgen.devices import Port
+from stepgen.plan.instructions import Instruction, Storage, access
 from stepgen.plan.kernels import Kernel, PortWrite, Ring, Toggle
+from stepgen.plan.pulse_code import pulse_end, pulse_start
+from stepgen.plan.pulses import Pulse
 
 
 def saved_registers(kernel: Kernel) -> tuple[str, ...]:
     """
     Return the registers beside r24 that `step_code` uses and that must be saved around it.
     """
-    if isinstance(kernel, Toggle):
+    if isinstance(kernel, Toggle | Pulse):
         return ()
     return ("r30", "r31") if len(kernel.writes) == 1 else ("r25", "r30", "r31")
 
@@ -22,13 +22,22 @@ def step_code(kernel: Kernel, storage: Storage) -> tuple[Instruction, ...]:
     """
     Return the instructions of one step of *kernel*; the last port write is its edge.
     """
+    if isinstance(kernel, Pulse):
+        return pulse_start(kernel)
     if isinstance(kernel, Toggle):
         return _toggle_step(kernel, storage)
     return _ring_step(kernel, storage)
 
 
+def end_code(kernel: Kernel, leave: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
+    """
+    Return *leave*, which gives SREG and r24 back, with what ends the step before it or behind it.
+    """
+    return pulse_end(kernel, leave) if isinstance(kernel, Pulse) else leave
+
+
 def _toggle_step(kernel: Toggle, storage: Storage) -> tuple[Instruction, ...]:
-    write = _access(kernel.port.pin)
+    write = access(kernel.port.pin)
     return (
         storage.state.load("r24", "state", "whose turn it is"),
         Instruction(f"{write.store}%[port0], r24", write.cycles, "ones written to PINx toggle"),
@@ -51,25 +60,25 @@ def _ring_step(kernel: Ring, storage: Storage) -> tuple[Instruction, ...]:
         return (*follow, *_single_write(kernel))
     lines = list(follow)
     for write in kernel.writes:
-        access = _access(write.port.port)
+        reach = access(write.port.port)
         operand = f"%[port{_port_index(kernel, write.port)}]"
         lines.append(Instruction(f"lpm   r24, Z{'+' if write != kernel.writes[-1] else ''}", 3))
-        lines.append(Instruction(f"{access.load}r25, {operand}", access.cycles))
+        lines.append(Instruction(f"{reach.load}r25, {operand}", reach.cycles))
         lines.extend(_combine(write))
         note = f"{write.port.letter}: {_WRITE_NOTES[write.operation]}"
-        lines.append(Instruction(f"{access.store}{operand}, r25", access.cycles, note))
+        lines.append(Instruction(f"{reach.store}{operand}, r25", reach.cycles, note))
     return tuple(lines)
 
 
 def _single_write(kernel: Ring) -> tuple[Instruction, ...]:
     write = kernel.writes[0]
-    access = _access(write.port.port)
+    reach = access(write.port.port)
     return (
         Instruction("lpm   r24, Z", 3, "its pattern"),
-        Instruction(f"{access.load}r30, %[port0]", access.cycles),
+        Instruction(f"{reach.load}r30, %[port0]", reach.cycles),
         Instruction(f"andi  r30, {~write.mask & 0xFF:#04x}", 1, "the port's other bits stay"),
         Instruction("or    r24, r30", 1),
-        Instruction(f"{access.store}%[port0], r24", access.cycles),
+        Instruction(f"{reach.store}%[port0], r24", reach.cycles),
     )
 
 
@@ -88,16 +97,3 @@ _WRITE_NOTES = {
     "merge": "off and on at once",
     "set": "coils that begin go on",
 }
-
-
-@dataclass(frozen=True)
-class _Access:
-    load: str
-    store: str
-    cycles: int
-
-
-def _access(register: Register) -> _Access:
-    if register.in_io:
-        return _Access("in    ", "out   ", 1)
-    return _Access("lds   ", "sts   ", 2)

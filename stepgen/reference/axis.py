@@ -18,6 +18,16 @@ def wrapped_int32(number: int) -> int:
     return (number + _INT32_HALF) % (2 * _INT32_HALF) - _INT32_HALF
 
 
+@dataclass(frozen=True)
+class Turn:
+    """
+    From this cycle on DIR shows *direction*, +1 or -1.
+    """
+
+    cycle: int
+    direction: int
+
+
 @dataclass
 class Axis:
     """
@@ -31,6 +41,7 @@ class Axis:
         coils_on: Whether the motor needs current.
         edges: The edges nobody has taken yet.
         needs: When that changed, each time so far.
+        turns: When the direction changed, each time so far.
     """
 
     phases: tuple[Pattern, ...]
@@ -40,13 +51,19 @@ class Axis:
     coils_on: bool = False
     edges: list[Edge] = field(default_factory=list)
     needs: list[Need] = field(default_factory=list)
+    turns: list[Turn] = field(default_factory=list)
+
+    def face(self, cycle: int, direction: int) -> None:
+        """
+        Note the direction of the steps that follow, +1 or -1, which coils do not show.
+        """
 
     def step(self, cycle: int, direction: int, call_index: int) -> None:
         """
         Go on by one phase, +1 along the table or -1 against it.
         """
         self.position = wrapped_int32(self.position + direction)
-        self.phase = (self.phase + direction) % len(self.phases)
+        self.phase = self._next_phase(direction)
         self._emit(cycle, EdgeKind.STEP, call_index)
 
     def switch(
@@ -68,6 +85,7 @@ class Axis:
         """
         shown = self.released[self.phase]
         self.position = 0
+        self.face(cycle, 1)
         self.phase = 0
         if self.coils_on:
             self.switch(cycle, on=False, call_index=call_index)
@@ -81,6 +99,27 @@ class Axis:
         edges, self.edges = self.edges, []
         return edges
 
+    def _next_phase(self, direction: int) -> int:
+        return (self.phase + direction) % len(self.phases)
+
     def _emit(self, cycle: int, kind: EdgeKind, call_index: int) -> None:
         pattern = (self.phases if self.coils_on else self.released)[self.phase]
         self.edges.append(Edge(cycle, pattern, self.position, kind, call_index))
+
+
+class DirectedAxis(Axis):
+    """
+    One motor whose driver counts the phases itself and is told the direction: phase 0 is forward.
+    """
+
+    def face(self, cycle: int, direction: int) -> None:
+        """
+        Show *direction*, +1 or -1, from now on.
+        """
+        phase = 0 if direction > 0 else 1
+        if phase != self.phase:
+            self.phase = phase
+            self.turns.append(Turn(cycle, direction))
+
+    def _next_phase(self, direction: int) -> int:
+        return 0 if direction > 0 else 1

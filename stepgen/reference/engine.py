@@ -11,6 +11,7 @@ from stepgen.reference.motion import Motion
 from stepgen.reference.notices import Notices
 from stepgen.reference.pace import Pace
 from stepgen.reference.stimuli import SetSpeed
+from stepgen.reference.timer import TimerSetting
 
 
 @dataclass
@@ -41,13 +42,22 @@ class Engine:
         Begin the motion of the accepted *call*; one in progress ends its interval first.
         """
         motion = Motion.of(call, call_index, self.millis, self.facts)
+        self.axis.face(call.cycle, motion.direction)
         if not self.running:
             self.pace.stop()
             self.axis.switch(call.cycle, on=True, call_index=call_index)
         if self.pace.deadline_cycle is None:
-            self.pace.begin(motion.begin_interval())
+            self.pace.begin(self._first_interval(motion, from_rest=not self.running))
         self.notices.clear()
         self.motion, self.running = motion, True
+
+    def _first_interval(self, motion: Motion, *, from_rest: bool) -> TimerSetting:
+        """
+        Return the interval that begins with a call: from rest the driver may have to wake up.
+        """
+        if from_rest and motion.virtual_cycles < self.facts.wake_cycles:
+            return self.facts.setting(self.facts.wake_cycles)
+        return motion.begin_interval()
 
     def rest(self) -> None:
         """

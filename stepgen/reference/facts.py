@@ -28,6 +28,9 @@ class MotorFacts:
         timing: What paces it.
         overrun_cycles: How late an interrupt is served, from its deadline to its response, from
             which on the step counts as missed; None where the hardware cannot tell.
+        has_direction: Whether *phases* are what the wires show forward and backward, not a table
+            to go along.
+        wake_cycles: The shortest first interval from rest, as a virtual value.
     """
 
     phases: tuple[Pattern, ...]
@@ -38,6 +41,8 @@ class MotorFacts:
     shares_enables: bool = False
     timing: TimingKind = "fast-pwm"
     overrun_cycles: int | None = None
+    has_direction: bool = False
+    wake_cycles: int = 0
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:

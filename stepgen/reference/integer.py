@@ -8,7 +8,7 @@ contract is the table of systems/1-motor-driver.md; the timer is in `stepgen.ref
 from collections.abc import Mapping
 from typing import assert_never
 
-from stepgen.reference.axis import Axis, wrapped_int32
+from stepgen.reference.axis import Axis, DirectedAxis, Turn, wrapped_int32
 from stepgen.reference.contract import Code, Control, Status
 from stepgen.reference.engine import Engine
 from stepgen.reference.facts import MotorFacts, ServiceCycle, served_at_once
@@ -63,7 +63,8 @@ class MotorModel:
         position: int = 0,
     ) -> None:
         self._facts = facts
-        self._axis = Axis(facts.phases, facts.released, wrapped_int32(position))
+        axis = DirectedAxis if facts.has_direction else Axis
+        self._axis = axis(facts.phases, facts.released, wrapped_int32(position))
         self._engine = Engine(facts, self._axis, Pace(service_cycle))
         self._notices = self._engine.notices
         self._now_cycle = 0
@@ -147,6 +148,13 @@ class MotorModel:
         Return each interval so far that began with a step, by the deadline of that step.
         """
         return self._engine.pace.begun
+
+    @property
+    def turns(self) -> tuple[Turn, ...]:
+        """
+        Return each change of DIR so far; it begins forward, and without DIR there is none.
+        """
+        return tuple(self._axis.turns)
 
     @property
     def callbacks(self) -> tuple[CallbackMade, ...]:

@@ -81,7 +81,7 @@ def through_running_setting(virtual_cycles: int) -> TimerSetting:
 
 
 SETTINGS: Mapping[TimingKind, Callable[[int], TimerSetting]] = MappingProxyType(
-    {"fast-pwm": timer_setting, "compare": through_running_setting}
+    {"fast-pwm": timer_setting, "ctc": timer_setting, "compare": through_running_setting}
 )
 """What each timing makes of a virtual value."""
 

@@ -138,13 +138,15 @@ class Motor(SpecModel):
     """
 
     drive: Drive
-    """What drives the motor: `motor-shield`, or a mapping with kind, pins and sequence."""
+    """What drives the motor: `motor-shield`, or a mapping with kind and pins."""
     timing: Timing = Field(default="fast-pwm", validate_default=True)
-    """What paces the steps: `fast-pwm` on a 16-bit timer, or `compare` on timer 2."""
+    """What paces the steps: `fast-pwm` or `ctc` on a 16-bit timer, or `compare` on timer 2."""
     motion: Motion = Field(default="constant", validate_default=True)
     """How it moves: `constant` speed, or `update-events` that change the speed while it runs."""
     steps_per_turn: Steps | None = None
     """Full steps in one turn of the shaft: a number, or full_steps and gear."""
+    steps_per_mm: Ratio | None = None
+    """Steps of the driver in one millimetre of the axis; microsteps count as steps."""
     at_rest: Literal["hold", "release"] = "release"
     """What the coils do after a motion with an end."""
     port: Literal["shared", "owned"] = "shared"

@@ -62,6 +62,10 @@ class CallKind(IntEnum):
     CLOCKS_PER_SECOND = 15
 
 
+SWITCHING = frozenset({CallKind.HOLD, CallKind.RELEASE})
+"""The calls that a motor does not have where nothing can switch its coils."""
+
+
 @dataclass(frozen=True)
 class Call:
     """

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 from stepgen.plan.model import MotorPlan
 from stepgen.reference.stimuli import Edge, EdgeKind
+from stepgen.verify.drives import Levels
 from stepgen.verify.edges import wrong_positions
-from stepgen.verify.electrical import Levels, is_between
 from stepgen.verify.oracle import WAKE_CYCLES, Comparison, Oracle, Scene
+from stepgen.verify.pulses import broken_pulses
 from stepgen.verify.rules import broken_rules
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import PortState, Run
@@ -32,6 +33,9 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     _compare_steps(subject, scene, runs, edges, result)
     _compare_calls(subject, scene, runs, edges, result)
     _compare_strangers(subject, scene, runs, result)
+    result.turns = oracle.turns
+    for broken in broken_pulses(subject, scene, runs, edges, result.turns):
+        result.report(broken)
     for broken in broken_rules(subject, index, scene, runs, edges, result.intervals):
         result.report(broken)
     for wrong in wrong_positions(subject, index, scene, runs):
@@ -77,7 +81,7 @@ def _compare_steps(
         edge = expected.get(run.raised)
         if edge:
             _compare_edge(subject, run, way, edge, result)
-        elif way[-1] != before:
+        elif any(seen != before for seen in way):
             result.report(f"a step at cycle {run.writes[-1].cycle} that nobody asked for")
 
 
@@ -107,7 +111,7 @@ def _compare_edge(
     _check_way(subject, way, result)
     if edge.kind is EdgeKind.STEP and run.writes:
         result.steps += 1
-        jitter = run.writes[-1].cycle - run.raised
+        jitter = subject.edge(run).cycle - run.raised
         result.jitter_cycles = max(result.jitter_cycles, jitter)
 
 
@@ -140,7 +144,7 @@ def _play(
 
 def _check_way(subject: Subject, way: Sequence[Levels], result: Comparison) -> None:
     for seen in way[1:-1]:
-        if not is_between(subject, way[0], way[-1], seen):
+        if not subject.drive.is_between(way[0], way[-1], seen):
             result.report(
                 f"{_text(seen)} on the way from {_text(way[0])} to {_text(way[-1])} drives a "
                 "coil that neither does"

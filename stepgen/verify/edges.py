@@ -9,7 +9,7 @@ reads the position must get the number of neighbours that went by.
 from collections.abc import Iterator, Sequence
 
 from stepgen.verify.bench import CallKind
-from stepgen.verify.electrical import Levels
+from stepgen.verify.drives import Levels
 from stepgen.verify.oracle import Scene
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run
@@ -42,10 +42,11 @@ def _can_be_counted(subject: Subject) -> bool:
     """
     Tell whether what the wires show says in which direction they went.
 
-    A table of one's own may repeat a pattern so that it does not, or have one without current.
+    A table of one's own may repeat a pattern so that it does not, or have one without current; the
+    pulses of a STEP wire are counted in `stepgen.verify.pulses`.
     """
     phases = subject.facts.phases
-    return all(
+    return not subject.facts.has_direction and all(
         phases[place - 1] != phases[(place + 1) % len(phases)]
         and phase.driven != subject.facts.coils_off.driven
         for place, phase in enumerate(phases)

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from stepgen.plan.model import Plan
+from stepgen.reference.axis import Turn
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sharing import Need
 from stepgen.reference.stimuli import Edge, MillisTick, Stimulus
@@ -40,7 +41,7 @@ class Comparison:
         jitter_cycles: The latest edge, counted from its deadline.
         longest_isr_cycles: The longest run of its step interrupt.
         isr_cycles: All runs together.
-        needs: When the motor needs current, as the model says.
+        needs: When the motor needs current, as the model says; turns: when it turns round.
         intervals: The interval after each step, by the step's deadline, as the model says.
     """
 
@@ -52,6 +53,7 @@ class Comparison:
     isr_cycles: int = 0
     needs: tuple[Need, ...] = ()
     intervals: Mapping[int, TimerSetting] = field(default_factory=dict)
+    turns: tuple[Turn, ...] = ()
 
     def report(self, finding: str) -> None:
         """
@@ -129,6 +131,13 @@ class Oracle:
         Return when the motor needs current, as far as the model has come.
         """
         return self._model.needs
+
+    @property
+    def turns(self) -> tuple[Turn, ...]:
+        """
+        Return when DIR changes, as far as the model has come.
+        """
+        return self._model.turns
 
     def served(self, runs: Sequence[Run]) -> list[Run]:
         """

@@ -43,7 +43,7 @@ def broken_rules(
     starts = scene.trace.clock_starts(subject.timer)
     yield from _wrong_intervals(intervals, runs, steps, starts)
     yield from _wrong_starts(subject, scene, calls, steps)
-    yield from _late_edges(scene.plan.motors[index], runs, calls, steps)
+    yield from _late_edges(subject, scene.plan.motors[index], runs, calls, steps)
 
 
 def _unmasked_calls(subject: Subject, scene: Scene, answers: Sequence[Answer]) -> Iterator[str]:
@@ -122,7 +122,7 @@ def _wrong_starts(
         first = firsts.get(index)
         if first is None or not any(commit[0] < start.cycle <= commit[1] for start in starts):
             continue
-        setting = subject.facts.setting(answer.call.top)
+        setting = subject.facts.setting(max(answer.call.top, subject.facts.wake_cycles))
         wait = first.deadline_cycle - commit[0]
         longest = setting.period_cycles + commit[1] - commit[0]
         if not setting.period_cycles - setting.prescaler <= wait <= longest:
@@ -133,7 +133,11 @@ def _wrong_starts(
 
 
 def _late_edges(
-    motor: MotorPlan, runs: Sequence[Run], calls: Sequence[Answer], steps: Sequence[Edge]
+    subject: Subject,
+    motor: MotorPlan,
+    runs: Sequence[Run],
+    calls: Sequence[Answer],
+    steps: Sequence[Edge],
 ) -> Iterator[str]:
     """
     Within the interrupt the wires change at the cycle that the plan states.
@@ -156,6 +160,6 @@ def _late_edges(
             path.overrun_cycles is not None and run.entered - run.raised >= path.overrun_cycles
         )
         latest += motor.gate.late_cycles if overrun or run.serves_later else 0
-        taken = run.writes[-1].cycle - run.entered
+        taken = subject.edge(run).cycle - run.entered
         if taken > latest:
             yield f"the step due at cycle {run.raised} took {taken} cycles; {latest} are planned"

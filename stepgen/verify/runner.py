@@ -7,9 +7,9 @@ from pathlib import Path
 
 from stepgen.plan.model import Plan
 from stepgen.spec import LoadedSpec
-from stepgen.verify.bench import Answer, Bench, Call, CallKind, Loop
+from stepgen.verify.bench import SWITCHING, Answer, Bench, CallKind, Loop
 from stepgen.verify.compare import Comparison, Scene, compare
-from stepgen.verify.scenarios import Scenario
+from stepgen.verify.scenarios import Scenario, Wait
 from stepgen.verify.shared_pins import compare_shared
 from stepgen.verify.simulators import SIMAVR, Simulator
 from stepgen.verify.subject import subjects
@@ -68,10 +68,10 @@ def run_scenario(
     with Bench(plan, elf, simulator) as bench:
         bench.set_loop(scenario.loop)
         for action in scenario.actions:
-            if isinstance(action, Call):
-                bench.call(action)
-            else:
+            if isinstance(action, Wait):
                 bench.wait(action.cycles)
+            elif action.kind not in SWITCHING or plan.motors[action.motor].switches_current:
+                bench.call(action)
         return judge(bench, loaded, scenario)
 
 

@@ -30,18 +30,25 @@ def compare_shared(
             for index in sharers
             for run in scene.trace.runs(subjects[index].vector)
         }
-        yield from _differences(bit, expected, _changes(scene.trace.ports, bit), scene, lefts)
+        level = subjects[sharers[0]].drive.current_level(bit)
+        changes = _changes(scene.trace.ports, bit, needed=level)
+        yield from _differences(bit, expected, changes, scene, lefts)
 
 
-def _changes(states: Sequence[PortState], bit: PortBit) -> Iterator[Need]:
+def _changes(states: Sequence[PortState], bit: PortBit, *, needed: bool) -> Iterator[Need]:
     """
-    Yield each change of *bit*; at reset it is LOW.
+    Yield each change of *bit*, whose level is *needed* for current; the first call is Init.
+
+    At reset it is LOW. That Init makes an enable that is active LOW go HIGH is no change of need.
     """
     level = False
+    is_fresh = True
     for state in states:
         if state.port == bit.port and bool(state.value >> bit.bit & 1) != level:
             level = not level
-            yield Need(state.cycle, level)
+            if needed or not is_fresh:
+                yield Need(state.cycle, level == needed)
+            is_fresh = False
 
 
 def _differences(

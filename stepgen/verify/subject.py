@@ -5,24 +5,22 @@ The oracle must not share the planner's tables: wires and phases are read here o
 """
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-from stepgen.devices import Board, PortBit, Timer
+from stepgen.devices import PortBit, Timer
 from stepgen.plan.model import Plan
 from stepgen.reference.contract import MotionKind, TimingKind
 from stepgen.reference.facts import MotorFacts
-from stepgen.reference.sequences import coils_off, phases
 from stepgen.spec import LoadedSpec, Motor
+from stepgen.verify.drives import DriveFacts, drive_facts
 from stepgen.verify.elf import read_firmware
+from stepgen.verify.trace import PortState, Run
 
 _VECTOR_BYTES = 4
 _RJMP = 0xC000
-# PWM A and B, then DIR A and B: of the shield, and of one stacked upon another.
-_SHIELD_ENABLES = ("D3", "D11")
-_SHIELD_DIRECTIONS = {False: ("D12", "D13"), True: ("D9", "D8")}
 
 
 @dataclass(frozen=True)
@@ -33,19 +31,17 @@ class Subject:
     Args:
         name: Its name in the spec.
         facts: What the reference model needs.
-        wires: The port bit of each wire, in the model's order.
+        drive: Its wires, in the model's order, and what they may show.
         vector: Number of the interrupt that makes its steps.
         timer: Its timer.
-        is_shield: Whether its wires are the motor shield's enables and directions.
         shared: Those of its wires that are another motor's too.
     """
 
     name: str
     facts: MotorFacts
-    wires: tuple[PortBit, ...]
+    drive: DriveFacts
     vector: int
     timer: Timer
-    is_shield: bool
     shared: tuple[PortBit, ...] = ()
 
     @property
@@ -53,20 +49,32 @@ class Subject:
         """
         Return the bits of its wires on each port, by the port's letter.
         """
-        return _masks(self.wires)
+        return _masks(self.drive.wires)
 
     @property
     def own_masks(self) -> dict[str, int]:
         """
         Return the same without the wires that it shares.
         """
-        return _masks(bit for bit in self.wires if bit not in self.shared)
+        return _masks(bit for bit in self.drive.wires if bit not in self.shared)
+
+    def edge(self, run: Run) -> PortState:
+        """
+        Return the write of *run* that makes the step: the last one, or that which raises STEP.
+        """
+        if self.drive.pulse is None:
+            return run.writes[-1]
+        step = self.drive.wires[0]
+        rises = (
+            write for write in run.writes if write.port == step.port and write.value >> step.bit & 1
+        )
+        return next(rises, run.writes[-1])
 
     def pattern(self, ports: dict[str, int]) -> tuple[bool, ...]:
         """
         Return what its wires show when the ports hold *ports*.
         """
-        return tuple(bool(ports[bit.port] >> bit.bit & 1) for bit in self.wires)
+        return tuple(bool(ports[bit.port] >> bit.bit & 1) for bit in self.drive.wires)
 
 
 def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:
@@ -75,26 +83,25 @@ def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:
 
     The planner's choices come from *plan*: timer, range, from which lateness on a step is missed.
     """
-    wires = {name: _wires(motor.drive, plan.board) for name, motor in loaded.spec.motors.items()}
-    users = Counter(bit for bits in wires.values() for bit in bits)
+    motors = loaded.spec.motors
+    drives = {name: drive_facts(motor.drive, plan.board) for name, motor in motors.items()}
+    users = Counter(bit for drive in drives.values() for bit in drive.wires)
     image = read_firmware(elf).image
     found = []
-    for name, planned in zip(loaded.spec.motors, plan.motors, strict=True):
-        motor = loaded.spec.motors[name]
+    for name, planned in zip(motors, plan.motors, strict=True):
+        drive = drives[name]
+        shared = tuple(bit for bit in drive.wires if users[bit] > 1)
+        facts = _facts(motors[name], drive, plan, shares_enables=bool(shared))
         vector = plan.board.mcu.vector(planned.timing.vector).number
         overrun = planned.hot_path.overrun_cycles
-        shared = tuple(bit for bit in wires[name] if users[bit] > 1)
+        saved = _jump_saved_cycles(image, vector)
         found.append(
             Subject(
                 name=name,
-                facts=replace(
-                    _facts(motor, plan, shares_enables=bool(shared)),
-                    overrun_cycles=overrun and overrun + _jump_saved_cycles(image, vector),
-                ),
-                wires=wires[name],
+                facts=replace(facts, overrun_cycles=overrun and overrun + saved),
+                drive=drive,
                 vector=vector,
                 timer=planned.timing.timer,
-                is_shield=motor.drive.kind == "motor-shield",
                 shared=shared,
             )
         )
@@ -118,30 +125,19 @@ def _jump_saved_cycles(image: bytes, vector: int) -> int:
     return int(opcode & 0xF000 == _RJMP)
 
 
-def _facts(motor: Motor, plan: Plan, *, shares_enables: bool) -> MotorFacts:
-    drive: Any = motor.drive
-    kind: Literal["four-wire", "motor-shield"] = drive.kind
+def _facts(motor: Motor, drive: DriveFacts, plan: Plan, *, shares_enables: bool) -> MotorFacts:
     motion_spec: Any = motor.motion
     motion: MotionKind = motion_spec.kind
     timing_spec: Any = motor.timing
     timing: TimingKind = timing_spec.kind
-    sequence: str | Sequence[str] = getattr(drive.sequence, "patterns", drive.sequence)
     return MotorFacts(
-        phases=phases(kind, sequence),
-        coils_off=coils_off(kind),
+        phases=drive.phases,
+        coils_off=drive.coils_off,
         minimum_cycles=plan.minimum_period_cycles,
         at_rest=motor.at_rest,
         motion=motion,
         timing=timing,
         shares_enables=shares_enables,
+        has_direction=drive.pulse is not None,
+        wake_cycles=drive.pulse.wake_cycles(timing) if drive.pulse else 0,
     )
-
-
-def _wires(drive: Any, board: Board) -> tuple[PortBit, ...]:  # noqa: ANN401 - any kind of drive
-    names = drive.pins if drive.kind == "four-wire" else _shield_names(drive)
-    pins = [board.find_pin(name) for name in names]
-    return tuple(pin.bit for pin in pins if pin)
-
-
-def _shield_names(drive: Any) -> tuple[str, ...]:  # noqa: ANN401 - a motor shield
-    return (*(drive.enables or _SHIELD_ENABLES), *_SHIELD_DIRECTIONS[drive.stacked])

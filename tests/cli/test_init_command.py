@@ -42,7 +42,8 @@ def test_options_say_what_the_spec_holds(stepgen: Stepgen, tmp_path: Path) -> No
     plan = api.plan(tmp_path / "fan.yaml")
     (motor,) = plan.motors
     assert plan.uses == ("Servo D9", "Serial")
-    assert (motor.name, motor.drive.kind, motor.drive.sequence) == ("fan", "four-wire", "half")
+    assert (motor.name, motor.drive.kind) == ("fan", "four-wire")
+    assert motor.steps_per_turn == 64  # half steps
     assert (motor.timing.kind, motor.timing.timer.number) == ("compare", 2)
     assert not motor.releases_at_rest
 

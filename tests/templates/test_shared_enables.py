@@ -9,6 +9,7 @@ import pytest
 from stepgen import api
 
 SPECS = sorted((Path(__file__).resolve().parents[2] / "specs").glob("*.yaml"))
+SHARING = [path for path in SPECS if "stacked" in path.stem or "cnc" in path.stem]
 STACKED = [path for path in SPECS if path.stem.startswith("mega_stacked_shields")]
 WARNING = (
     "as long as either motor needs current, the coils of both have it, also those of a motor "
@@ -52,7 +53,7 @@ def test_the_readme_warns_and_initialises_both(path: Path) -> None:
     assert readme.count("  lowerShieldInit();") == readme.count("  upperShieldInit();") == 2
 
 
-@pytest.mark.parametrize("path", sorted({*SPECS} - {*STACKED}), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted({*SPECS} - {*SHARING}), ids=lambda path: path.stem)
 def test_enables_of_its_own_cost_nothing(path: Path) -> None:
     """
     Where no enables are shared nobody asks who needs them.

@@ -82,7 +82,7 @@ def test_a_timer_that_the_board_lacks_is_refused(faults: Faulty) -> None:
 
     assert found[0].text == "3"
     assert _lines(found) == [
-        ":4:39 the Arduino Uno has no 16-bit timer 3; fast PWM runs on timer 1"
+        ":4:39 the Arduino Uno has no 16-bit timer 3; fast-pwm runs on timer 1"
     ]
 
 

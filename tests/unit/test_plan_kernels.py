@@ -33,6 +33,11 @@ def _plan(board: str, **motors: dict[str, Any]) -> Plan:
     return make_plan(LoadedSpec(spec, Document(Path("spec.yaml"), TEXT, tree, tree)))
 
 
+def _coils(motor: MotorPlan) -> CoilDrive:
+    assert isinstance(motor.drive, CoilDrive)
+    return motor.drive
+
+
 def _motor(board: str, **motor: object) -> MotorPlan:
     return _plan(board, motor=motor).motors[0]
 
@@ -126,7 +131,7 @@ def _is_allowed(drive: CoilDrive, old: Levels, new: Levels, seen: Levels) -> boo
 
 
 def _check_ring(motor: MotorPlan, background: int) -> None:
-    ring, drive = motor.kernel, motor.drive
+    ring, drive = motor.kernel, _coils(motor)
     assert isinstance(ring, Ring)
     count = len(drive.phases)
     for phase in range(count):

@@ -35,7 +35,8 @@ def drives(tmp_path: Path) -> Drives:
         path = tmp_path / "spec.yaml"
         motors = "".join(f"  m{index}: {{drive: {drive}}}\n" for index, drive in enumerate(drives))
         path.write_text(f"library: Mine\nboard: {board}\nmotors:\n{motors}", encoding="utf-8")
-        return [motor.drive for motor in make_plan(load_spec(path)).motors]
+        planned = [motor.drive for motor in make_plan(load_spec(path)).motors]
+        return [drive for drive in planned if isinstance(drive, CoilDrive)]
 
     return plan
 

@@ -99,10 +99,9 @@ void lowerShieldInit();
 //                      0 stops the motor
 //   limit              steps, or milliseconds with MOTOR_CTRL_ENDPOINT_MILLIS; 0: no end
 //
-// From rest the coils are energised at once and the first step comes one interval later. While
-// the motor runs, the interval in progress ends as it was; the step at its end is the first of
-// the new motion. One interval after the last step the coils go off,
-// unless upper needs the current.
+// From rest the coils are energised at once and the first step comes one interval later. While the
+// motor runs, the interval in progress ends as it was; the step at its end is the first of the new
+// motion. One interval after the last step the coils go off, unless upper needs the current.
 //
 // Returns 0, MOTOR_WARN_NOT_ENABLED, or below 0 why the call was refused: MOTOR_ERROR_...
 int8_t lowerSetSpeed(
@@ -165,10 +164,9 @@ void upperShieldInit();
 // upperTimerUpdateCheck(); one at a time. It acts from the following interval. At the end of the
 // range, MOTOR_MIN_TOP or MOTOR_MAX_TOP, events stop with a fault; the motor runs on.
 //
-// From rest the coils are energised at once and the first step comes one interval later. While
-// the motor runs, the interval in progress ends as it was; the step at its end is the first of
-// the new motion. One interval after the last step the coils go off,
-// unless lower needs the current.
+// From rest the coils are energised at once and the first step comes one interval later. While the
+// motor runs, the interval in progress ends as it was; the step at its end is the first of the new
+// motion. One interval after the last step the coils go off, unless lower needs the current.
 //
 // Returns 0, MOTOR_WARN_NOT_ENABLED, or below 0 why the call was refused: MOTOR_ERROR_...
 int8_t upperSetSpeed(

@@ -97,9 +97,9 @@ void motorShieldInit();
 // motorTimerUpdateCheck(); one at a time. It acts from the following interval. At the end of the
 // range, MOTOR_MIN_TOP or MOTOR_MAX_TOP, events stop with a fault; the motor runs on.
 //
-// From rest the coils are energised at once and the first step comes one interval later. While
-// the motor runs, the interval in progress ends as it was; the step at its end is the first of
-// the new motion. At its end the coils stay on and hold the position.
+// From rest the coils are energised at once and the first step comes one interval later. While the
+// motor runs, the interval in progress ends as it was; the step at its end is the first of the new
+// motion. At its end the coils stay on and hold the position.
 //
 // Returns 0, MOTOR_WARN_NOT_ENABLED, or below 0 why the call was refused: MOTOR_ERROR_...
 int8_t motorSetSpeed(

@@ -81,9 +81,9 @@ void motorShieldInit();
 //                      0 stops the motor
 //   limit              steps, or milliseconds with MOTOR_CTRL_ENDPOINT_MILLIS; 0: no end
 //
-// From rest the coils are energised at once and the first step comes one interval later. While
-// the motor runs, the interval in progress ends as it was; the step at its end is the first of
-// the new motion. At its end the coils stay on and hold the position.
+// From rest the coils are energised at once and the first step comes one interval later. While the
+// motor runs, the interval in progress ends as it was; the step at its end is the first of the new
+// motion. At its end the coils stay on and hold the position.
 //
 // Returns 0, MOTOR_WARN_NOT_ENABLED, or below 0 why the call was refused: MOTOR_ERROR_...
 int8_t motorSetSpeed(

@@ -25,6 +25,18 @@ class TimerView(Protocol):
         Return what the structs of its motions begin with, so that those of two timings differ.
         """
 
+    @property
+    def shared_by(self) -> str:
+        """
+        Return the partial whose shared part and fields it has: its own, or that of a like timing.
+        """
+
+    @property
+    def elapsed_type(self) -> str:
+        """
+        Return the type that holds the ticks until it is set anew; "" where it never is.
+        """
+
 
 def timer_view(motor: MotorPlan) -> TimerView:
     """

@@ -5,7 +5,7 @@ Compare: registers and bits of the timer that runs through.
 from dataclasses import dataclass
 
 from stepgen.plan.model import MotorPlan
-from stepgen.plan.timings.compare import LONGEST_WAIT_CYCLES
+from stepgen.plan.timings.compare import LONGEST_WAIT_CYCLES, PRESCALER
 
 
 @dataclass(frozen=True)
@@ -20,6 +20,7 @@ class CompareView:
 
     number: int
     struct_prefix: str
+    shared_by: str
     tccra: str
     tccrb: str
     tcnt: str
@@ -30,6 +31,8 @@ class CompareView:
     ocie: str
     clock: str
     longest_wait: int
+    wake: str
+    elapsed_type: str = ""  # nothing sets this timer anew
 
 
 def view(motor: MotorPlan) -> CompareView:
@@ -41,6 +44,7 @@ def view(motor: MotorPlan) -> CompareView:
     return CompareView(
         number=n,
         struct_prefix="Compare",
+        shared_by="compare",
         tccra=timer.tccra.name,
         tccrb=timer.tccrb.name,
         tcnt=timer.tcnt.name,
@@ -51,4 +55,16 @@ def view(motor: MotorPlan) -> CompareView:
         ocie=f"OCIE{n}A",
         clock=f"CS{n}1",
         longest_wait=LONGEST_WAIT_CYCLES,
+        wake=_wake(motor.wake_cycles),
     )
+
+
+def _wake(cycles: int) -> str:
+    """
+    Return an interval of *cycles* as an initialiser, like chooseInterval(); empty if there is none.
+    """
+    if not cycles:
+        return ""
+    laps, rest = divmod(cycles // PRESCALER, 256)
+    first = rest // 2 + 128
+    return f"{{{first}, {(rest - first) % 256}, {laps % 256}, {(laps - 1) // 256}}}"

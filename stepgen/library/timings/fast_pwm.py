@@ -5,7 +5,7 @@ Fast PWM: registers, mode bits, and the ticks that pass until a step has set the
 from dataclasses import dataclass
 
 from stepgen.plan.model import MotorPlan
-from stepgen.plan.timings.fast_pwm import PRESCALERS, elapsed_cycles
+from stepgen.plan.timings.fast_pwm import PRESCALERS, choose_setting, elapsed_cycles
 
 _BYTE_MAX = 0xFF
 
@@ -18,6 +18,7 @@ class FastPwmView:
 
     number: int
     struct_prefix: str
+    shared_by: str
     tccra: str
     tccrb: str
     tcnt: str
@@ -26,6 +27,7 @@ class FastPwmView:
     tifr: str
     tov: str
     toie: str
+    waiting: str
     mode_a: str
     mode_b: str
     linkage: str
@@ -36,6 +38,7 @@ class FastPwmView:
     elapsed_woken: int
     elapsed_limited: int
     elapsed_note: str
+    wake: str
 
 
 def view(motor: MotorPlan) -> FastPwmView:
@@ -49,6 +52,7 @@ def view(motor: MotorPlan) -> FastPwmView:
     return FastPwmView(
         number=n,
         struct_prefix="",
+        shared_by="fast_pwm",
         tccra=timer.tccra.name,
         tccrb=timer.tccrb.name,
         tcnt=timer.tcnt.name,
@@ -57,6 +61,7 @@ def view(motor: MotorPlan) -> FastPwmView:
         tifr=timer.tifr.name,
         tov=f"TOV{n}",
         toie=f"TOIE{n}",
+        waiting="an overflow",
         mode_a=f"_BV(WGM{n}1) | _BV(WGM{n}0)",
         mode_b=f"_BV(WGM{n}3) | _BV(WGM{n}2)",
         linkage="SHARED" if changes else "INLINE",
@@ -67,7 +72,18 @@ def view(motor: MotorPlan) -> FastPwmView:
         elapsed_woken=len(PRESCALERS),
         elapsed_limited=2 * len(PRESCALERS),
         elapsed_note="; then both with a limit in\n// milliseconds" if changes else "",
+        wake=_wake(motor.wake_cycles),
     )
+
+
+def _wake(cycles: int) -> str:
+    """
+    Return the setting of an interval of *cycles* as an initialiser; empty if there is none.
+    """
+    if not cycles:
+        return ""
+    setting = choose_setting(cycles)
+    return f"{{{setting.top}, {PRESCALERS.index(setting.prescaler) + 1}}}"
 
 
 def _ticks(cycles: int) -> str:

@@ -5,9 +5,10 @@ Four wires, one for each coil, in the order in which the coils follow each other
 from collections.abc import Sequence
 
 from stepgen.devices import Board
-from stepgen.plan.coils import CoilDrive, Pattern, Wire
+from stepgen.plan.coils import CoilDrive, Pattern
 from stepgen.plan.faults import Faults
 from stepgen.plan.pins import missing_pin
+from stepgen.plan.wires import Wire
 from stepgen.spec.base import KindModel
 from stepgen.spec.drives.four_wire import FourWire
 from stepgen.spec.sequence import PatternTable

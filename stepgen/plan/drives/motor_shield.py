@@ -9,9 +9,10 @@ D12 and D13 are cut and wired to D9 and D8, and the brake jumpers of both are cu
 from collections.abc import Sequence
 
 from stepgen.devices import Board
-from stepgen.plan.coils import CoilDrive, Pattern, Wire
+from stepgen.plan.coils import CoilDrive, Pattern
 from stepgen.plan.faults import Faults
 from stepgen.plan.pins import missing_pin
+from stepgen.plan.wires import Wire
 from stepgen.spec.base import KindModel
 from stepgen.spec.drives.motor_shield import MotorShield
 

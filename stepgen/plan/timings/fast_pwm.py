@@ -22,25 +22,34 @@ def plan(spec: FastPwm, board: Board, free: tuple[int, ...], faults: Faults) -> 
     """
     Return the 16-bit timer that *spec* asks for, or the first of the *free* ones.
     """
+    return plan_wide(spec.kind, spec.timer, board, free, faults)
+
+
+def plan_wide(
+    kind: str, wanted: int | None, board: Board, free: tuple[int, ...], faults: Faults
+) -> TimerPlan | None:
+    """
+    Return the 16-bit timer *wanted* for the timing *kind*, or the first of the *free* ones.
+    """
     timers = [timer.number for timer in board.mcu.timers16]
     names = " or ".join(str(number) for number in timers)
     wide = _wide(board, free)
-    if spec.timer is None and not wide:
+    if wanted is None and not wide:
         faults.report(
             f"the {board.title} has no 16-bit timer left for this motor ({names}); "
             f"take {compare.offer(board, free)}a larger board, or remove a motor or a library "
             "from `uses`"
         )
         return None
-    number = wide[0] if spec.timer is None else spec.timer
+    number = wide[0] if wanted is None else wanted
     timer = board.mcu.timer16(number)
     if timer is None:
         faults.at("timer").report(
-            f"the {board.title} has no 16-bit timer {number}; fast PWM runs on timer {names}"
+            f"the {board.title} has no 16-bit timer {number}; {kind} runs on timer {names}"
         )
         return None
     return TimerPlan(
-        kind=spec.kind,
+        kind=kind,
         timer=timer,
         vector=timer.ovf.name,
         event="overflow",

@@ -31,11 +31,17 @@ OF_TIMING: Mapping[str, Sequence[str]] = {
         # Without these a slow step, or one too many at a start, would not be seen.
         *("double-buffer", "slow-step", "count-kept", "late-compare-shows"),
     ),
+    "ctc": (
+        *("ctc-period", "prescaler-phase", "compare-flag-edge", "counts-exactly", "flag-write"),
+        # Without these a compare that has already passed would not be seen.
+        *("ctc-wrap", "count-kept"),
+    ),
     "compare": ("timer2-compare", "timer2-moves", "flag-write"),
 }
 OF_KERNEL: Mapping[str, Sequence[str]] = {
     "toggle": ("pin-writes", "pin-writes-1280", "pin-writes-2560"),
     "ring": (),
+    "pulse": ("pin-writes", "pin-writes-1280", "pin-writes-2560"),
 }
 
 

@@ -1,0 +1,98 @@
+"""
+Metric units: what the functions of a motor that has steps per millimetre compute.
+"""
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from stepgen import api
+
+SPEC = """
+library: Mine
+board: {board}
+motors:
+  z:
+    drive: {{kind: step-dir, driver: a4988, step: D2, dir: D5, enable: D8}}
+    steps_per_mm: {steps}
+"""
+
+
+def _files(folder: Path, steps: str, board: str = "uno") -> dict[str, str]:
+    path = folder / "spec.yaml"
+    path.write_text(SPEC.format(steps=steps, board=board), encoding="utf-8")
+    return api.generate(path)
+
+
+def _body(text: str, name: str) -> str:
+    start = text.index("return ", text.index(f"{name}(")) + len("return ")
+    return text[start : text.index(";", start)]
+
+
+def _value(expression: str, **values: int) -> int:
+    """
+    Return what a body computes, in Python's integers.
+    """
+    for old, new in (
+        ("motorTimerGetIOclocksPerSecond()", "clocks"),
+        ("zReadPosition()", "position"),
+        ("static_cast<uint32_t>", ""),
+        ("static_cast<int32_t>", ""),
+        ("ULL", ""),
+        ("UL", ""),
+        ("LL", ""),
+        ("speed ? ", ""),
+        (" : 0", ""),
+        ("/", "//"),
+    ):
+        expression = expression.replace(old, new)
+    result = eval(expression, {}, values)  # noqa: S307 - an expression of our own
+    assert isinstance(result, int)
+    return result
+
+
+@pytest.mark.parametrize("steps", ["4000", "80", "3200/7", "157.48", "1"])
+def test_the_functions_are_the_exact_ratio_cut_off(tmp_path: Path, steps: str) -> None:
+    """
+    Speed, way and position against exact fractions; a way is rounded, the others are cut off.
+    """
+    files = _files(tmp_path, steps)
+    header, source = files["src/Mine.h"], files["src/Mine.cpp"]
+    per_mm = Fraction(steps)
+
+    for speed in (1, 500, 12_345, 3_000_000):
+        top = _value(_body(source, "zTimerCalcNanometresPerSecond"), clocks=16_000_000, speed=speed)
+        assert top == 16_000_000 * 1_000_000 / per_mm / speed // 1
+    for way in (1, 999, 1_000, 123_456):
+        made = _value(_body(header, "zStepsForMicrometres"), micrometres=way)
+        assert abs(made - way * per_mm / 1000) <= Fraction(1, 2)
+    for position in (0, 1, 4_000, 8_000_000):
+        read = _value(_body(source, "zReadNanometres"), position=position)
+        assert read == position * 1_000_000 / per_mm // 1
+
+
+def test_32_bits_are_taken_where_they_do(tmp_path: Path) -> None:
+    """
+    16 MHz times 250 nm are 4 * 10^9, below 2^32; times 269 they are more.
+    """
+    assert "ULL" not in _files(tmp_path, "4000")["src/Mine.cpp"]
+    assert "ULL" in _files(tmp_path, "1000000/269")["src/Mine.cpp"]
+
+
+def test_the_header_says_how_far_the_position_goes(tmp_path: Path) -> None:
+    """
+    2^31 nm are 2147.48 mm.
+    """
+    header = _files(tmp_path, "4000")["src/Mine.h"]
+
+    assert "2147.48 mm either way" in " ".join(header.replace("//", " ").split())
+
+
+def test_a_motor_without_millimetres_has_no_such_functions() -> None:
+    """
+    What a spec does not use does not exist in its library.
+    """
+    spec = Path(__file__).resolve().parents[2] / "specs" / "uno_cnc_shield.yaml"
+
+    assert not any("metres" in text for text in api.generate(spec).values())
