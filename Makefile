@@ -55,7 +55,7 @@ verify: setup  ## Compile, simulate and compare the library of each spec.
 matrix: setup  ## The same on every compiler, several at a time.
 	$(BIN)/stepgen matrix --jobs $(JOBS)
 
-campaign: setup  ## Run the long random campaigns, which `make test` leaves out.
+campaign: setup $(STAMPS)/fuzz  ## Run the long random campaigns, which `make test` leaves out.
 	$(BIN)/pytest -n $(JOBS) -m campaign
 
 yasimavr: setup $(STAMPS)/yasimavr  ## Compile the third simulator and run the tests on it.
@@ -105,6 +105,10 @@ $(STAMPS)/dev: pyproject.toml | $(STAMPS)/venv
 	$(PIP_INSTALL) --upgrade 'pip>=25.1'
 	$(PIP_INSTALL) --editable '.[verify,avr8js]' --group dev
 	@touch $@ $(STAMPS)/runtime
+
+$(STAMPS)/fuzz: pyproject.toml $(STAMPS)/dev
+	$(PIP_INSTALL) --group fuzz
+	@touch $@
 
 $(STAMPS)/avr8js: Makefile $(STAMPS)/dev
 	PATH="$(CURDIR)/$(BIN):$$PATH" npm install --global --silent --prefix $(VENV) $(AVR8JS)
