@@ -38,6 +38,9 @@ ODD: tuple[object, ...] = (
     {},
 )
 
+# PWM A, brakes B and A, PWM B, DIR A and B of the Arduino Motor Shield R3.
+SHIELD_PINS = ("D3", "D8", "D9", "D11", "D12", "D13")
+
 library_names = st.from_regex(r"X[A-Za-z0-9_]{0,62}", fullmatch=True)
 motor_names = st.sampled_from(KEYWORDS) | st.from_regex(r"[a-z][A-Za-z0-9]{0,30}", fullmatch=True)
 lines = st.sampled_from(CODE) | st.text(
@@ -66,7 +69,12 @@ def specs(draw: st.DrawFn) -> Data:
     most = min(3, len(board.mcu.timers) - 1)
     names = draw(st.lists(motor_names, min_size=1, max_size=most, unique_by=str.lower))
     compared = draw(st.sampled_from([*names, None]))
-    motors = {name: draw(motor(free, timed=name != compared)) for name in names}
+    shield = draw(st.sampled_from([*names, None]))
+    if shield:
+        free = [pin for pin in free if pin not in SHIELD_PINS]
+    motors = {
+        name: draw(motor(free if name != shield else [], timed=name != compared)) for name in names
+    }
     return {"library": draw(library()), "board": board.name, "motors": motors}
 
 
@@ -86,13 +94,18 @@ def library(draw: st.DrawFn) -> Data | str:
 @st.composite
 def motor(draw: st.DrawFn, free: list[str], *, timed: bool) -> Data:
     """
-    Draw a motor on pins of *free*, which it takes away; on timer 2 unless it is *timed*.
+    Draw a motor on pins of *free*, which it takes away, or on the shield where none is free.
+
+    It is on timer 2 unless it is *timed*, on one of 16 bits.
     """
-    pins = draw(st.lists(st.sampled_from(free), min_size=4, max_size=4, unique=True))
-    for pin in pins:
-        free.remove(pin)
-    tables = st.lists(patterns, min_size=3, max_size=32).filter(_steps)
-    sequence = st.sampled_from(["full", "wave", "half"]) | tables
+    named = st.sampled_from(["full", "wave", "half"])
+    if free:
+        pins = draw(st.lists(st.sampled_from(free), min_size=4, max_size=4, unique=True))
+        free[:] = [pin for pin in free if pin not in pins]
+        tables = st.lists(patterns, min_size=3, max_size=32).filter(_steps)
+        drive = {"kind": "four-wire", "pins": pins, "sequence": draw(named | tables)}
+    else:
+        drive = {"kind": "motor-shield", "sequence": draw(named)}
     gear = st.integers(1, 500) | st.sampled_from([63.68395, "25792/405", "1/3"])
     turn = st.fixed_dictionaries({"full_steps": st.integers(1, 2000), "gear": gear})
     options = {
@@ -103,7 +116,7 @@ def motor(draw: st.DrawFn, free: list[str], *, timed: bool) -> Data:
         "steps_per_turn": st.integers(1, 1_000_000) | turn,
     }
     return {
-        "drive": {"kind": "four-wire", "pins": pins, "sequence": draw(sequence)},
+        "drive": drive,
         "timing": "fast-pwm" if timed else "compare",
         **draw(st.fixed_dictionaries({}, optional=options)),
     }
