@@ -31,9 +31,9 @@ _HELPER_PREFIXES = frozenset(
 # folder on Windows; in lower case, since file names there and on macOS do not tell it apart.
 _DEVICES = {f"{device}{digit}" for device in ("com", "lpt") for digit in range(1, 10)}
 _CORE_HEADERS = """
-    arduino binary cdc client eeprom hardwareserial hid ipaddress main new pins_arduino
-    pluggableusb print printable server servo softwareserial spi stream udp usbapi usbcore
-    usbdesc wcharacter wire wiring_private wstring con prn aux nul
+    arduino binary cdc client eeprom hardwareserial hardwareserial_private hid ipaddress main new
+    pins_arduino pluggableusb print printable server servo softwareserial spi stream udp usbapi
+    usbcore usbdesc wcharacter wire wiring_private wstring con prn aux nul
 """
 _IDE_LIBRARIES = """
     bridge esplora ethernet firmata gsm keyboard liquidcrystal mouse robot_control robot_motor

@@ -28,7 +28,7 @@ def _fraction(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
     except (ValueError, ArithmeticError):
         raise ValueError(_NO_NUMBER) from None
     if not 0 < number <= _LARGEST or number.denominator > _LARGEST:
-        raise ValueError(f"is out of range; it must be above 0 and at most {_LARGEST}")
+        raise ValueError(f"is out of range; write one above 0 and at most {_LARGEST}")
     return number
 
 

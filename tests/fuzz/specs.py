@@ -54,7 +54,9 @@ def to_yaml(data: object) -> bytes:
     Return *data* as the file of a spec.
     """
     stream = BytesIO()
-    YAML(typ="safe").dump(data, stream)
+    yaml = YAML(typ="safe")
+    yaml.representer.ignore_aliases = lambda _: True  # a spec has no anchors
+    yaml.dump(data, stream)
     return stream.getvalue()
 
 
