@@ -22,6 +22,7 @@ from stepgen.verify.scenarios import standard_scenarios
 from stepgen.verify.toolchain import default_compiler
 from tests.fuzz.specs import specs, to_yaml
 
+FOUND = sorted((Path(__file__).parents[1] / "fuzz" / "found").iterdir())
 FIRST_SEED = 20_260_201
 GROUPS, CAMPAIGN_GROUPS = 4, 100
 SPECS_IN_A_GROUP = 5
@@ -29,12 +30,10 @@ SCENARIOS = ("single steps both ways", "stop while running", "refused calls", "h
              "all motors at once", "a busy, hostile sketch")  # fmt: skip
 
 
-def prove(folder: Path, data: dict[str, Any]) -> None:
+def prove(path: Path) -> None:
     """
-    Build the library of the spec *data*, run it, and compare it with the model.
+    Build the library of the spec in *path*, run it, and compare it with the model.
     """
-    path = folder / "spec.yaml"
-    path.write_bytes(to_yaml(data))
     try:
         loaded, plan = api.load(path), api.plan(path)
     except StepgenError:
@@ -67,9 +66,19 @@ def run_group(folder: Path, seed: int) -> None:
     )
     @given(data=specs())
     def check(data: dict[str, Any]) -> None:
-        prove(folder, data)
+        path = folder / "spec.yaml"
+        path.write_bytes(to_yaml(data))
+        prove(path)
 
     check()
+
+
+@pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
+def test_what_the_campaign_found(path: Path) -> None:
+    """
+    Specs that once did not compile, or did not keep to their plan.
+    """
+    prove(path)
 
 
 @pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + GROUPS))
