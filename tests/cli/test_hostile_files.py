@@ -10,6 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
+
+from stepgen.cli import app
 
 Stepgen = Callable[..., Any]
 
@@ -163,3 +166,40 @@ def test_a_fault_is_one_line(stepgen: Stepgen, tmp_path: Path) -> None:
 
     assert [line for line in said if line.startswith("a.yaml:9")] == []
     assert len(said) == 3  # the fault, its line and the caret
+
+
+@pytest.mark.parametrize(
+    "scenario",
+    [
+        "steps: [&a {call: read}, *a]",
+        "steps: [{call: !!python/name:os.system read}]",
+        "steps: " + "[" * 3000 + "]" * 3000,
+        "steps: [{wait_ms: .nan}]",
+        "steps: [{wait_ms: .inf}]",
+        "steps: [{wait_ms: 0x" + "F" * 6000 + "}]",
+        "steps: [{call: set_speed, top: 18446744073709551616}]",
+        "steps: [{call: set_speed, limit: true}]",
+        'steps: [{call: read, motor: "x\\na.yaml:9:9: error: made up"}]',
+        'steps: [{call: read, motor: "\\e[2J"}]',
+        "steps: [{call: system}]",
+        "steps: [1:30]",
+        "steps: {}",
+        "loop: on\nsteps: [{call: read}]",
+        "",
+    ],
+)
+def test_a_scenario_is_no_way_in_either(pan: Path, tmp_path: Path, scenario: str) -> None:
+    """
+    The same of the file of a scenario: faults with places, before anything is compiled.
+    """
+    path = tmp_path / "a.yaml"
+    path.write_text(scenario, encoding="utf-8")
+
+    run = CliRunner().invoke(app, ["simulate", str(pan), "--scenario", str(path)])
+
+    assert (run.exit_code, run.stdout) == (2, "")
+    reports = [line for line in run.stderr.splitlines() if not line.startswith("    ")]
+    assert reports
+    assert all(line.startswith(f"{path}:") and ": error: " in line for line in reports)
+    assert not [line for line in reports if line.startswith("a.yaml:9")]
+    assert "\x1b" not in run.stderr
