@@ -55,7 +55,7 @@ verify: setup  ## Compile, simulate and compare the library of each spec.
 matrix: setup  ## The same on every compiler and every simulator that is installed, in one table.
 	$(BIN)/stepgen matrix --simulator all --jobs $(JOBS)
 
-campaign: setup  ## Run what takes long: random campaigns, every spec on each compiler and simulator.
+campaign: setup $(STAMPS)/fuzz  ## Run what takes long: random campaigns, fuzzing, every spec on each compiler.
 	$(BIN)/pytest -n $(JOBS) -m campaign
 
 yasimavr: setup $(STAMPS)/yasimavr  ## Compile the third simulator and run the tests on it.
@@ -108,6 +108,10 @@ $(STAMPS)/dev: pyproject.toml | $(STAMPS)/venv
 	$(PIP_INSTALL) --upgrade 'pip>=25.1'
 	$(PIP_INSTALL) --editable '.[verify,avr8js]' --group dev
 	@touch $@ $(STAMPS)/runtime
+
+$(STAMPS)/fuzz: pyproject.toml $(STAMPS)/dev
+	$(PIP_INSTALL) --group fuzz
+	@touch $@
 
 $(STAMPS)/avr8js: Makefile $(STAMPS)/dev
 	PATH="$(CURDIR)/$(BIN):$$PATH" npm install --global --silent --prefix $(VENV) $(AVR8JS)

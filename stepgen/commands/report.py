@@ -13,13 +13,13 @@ from typing import Any
 
 import typer
 
-from stepgen.errors import Fault
+from stepgen.errors import Fault, StepgenError
+from stepgen.spec.document import LINE_END, read_bytes
 
 WRONG = 2  # exit code of wrong use and of an invalid spec
 FAILED = 1  # exit code of a failed comparison, lint or freshness check
 
 _PLACE = re.compile(r"(?P<path>.+):(?P<line>\d+):(?P<column>\d+)", re.DOTALL)
-_LINE_END = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # as YAML counts lines
 _LONGEST_LINE = 100
 _LEAD = 30
 
@@ -71,9 +71,13 @@ def source_lines(fault: Fault) -> tuple[str, ...]:
 
 def printable(text: str) -> str:
     """
-    Return *text* with its control characters shown as ``?``: a spec must not steer a terminal.
+    Return *text* with what cannot be seen shown as ``?``: a spec must not steer a terminal.
+
+    Bytes of a path that are no text stay: the streams escape them.
     """
-    return "".join("?" if unicodedata.category(c) == "Cc" and c not in "\t\n" else c for c in text)
+    return "".join(
+        c if c.isprintable() or c in "\t\n" or "\udc80" <= c <= "\udcff" else "?" for c in text
+    )
 
 
 def _width(text: str) -> int:
@@ -87,10 +91,10 @@ def _width(text: str) -> int:
 @lru_cache(maxsize=4)
 def _read_lines(path: str) -> tuple[str, ...]:
     try:
-        text = Path(path).read_text(encoding="utf-8-sig", errors="replace")
-    except OSError:
+        text = read_bytes(Path(path)).decode("utf-8-sig", errors="replace")
+    except StepgenError:
         return ()
-    return tuple(_LINE_END.split(text))
+    return tuple(LINE_END.split(text))
 
 
 def _color() -> bool | None:

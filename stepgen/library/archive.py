@@ -9,13 +9,12 @@ from pathlib import Path
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 from stepgen.errors import Fault, StepgenError
-from stepgen.library.marker import MARKER, parse_marker, with_marker
-from stepgen.library.swap import locked, os_errors, recover, replace_file
+from stepgen.library.marker import LARGEST_MARKER_BYTES, MARKER, parse_marker, with_marker
+from stepgen.library.swap import locked, os_errors, recover, replace_file, spare_nothing
 
 _NO_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that the format knows
 _UNIX = 3  # the system that the attributes are of
 _PLAIN_FILE = 0o100644 << 16
-_LARGEST_MARKER_BYTES = 1 << 20
 
 
 def zip_library(files: Mapping[str, str], name: str, target: Path) -> bool:
@@ -34,7 +33,7 @@ def zip_library(files: Mapping[str, str], name: str, target: Path) -> bool:
         target.parent.mkdir(parents=True, exist_ok=True)
         with locked(target.parent) as alone:
             if alone:
-                recover(target)
+                recover(target, spare_nothing)
             _refuse(name, target)
             if target.is_file() and target.read_bytes() == content:
                 return False
@@ -86,7 +85,7 @@ def _is_ours(name: str, target: Path) -> bool:
         return False
     try:
         with ZipFile(target) as archive, archive.open(f"{name}/{MARKER}") as marker:
-            return parse_marker(marker.read(_LARGEST_MARKER_BYTES)) is not None
+            return parse_marker(marker.read(LARGEST_MARKER_BYTES)) is not None
     except (BadZipFile, KeyError, NotImplementedError, RuntimeError, EOFError):
         return False
 

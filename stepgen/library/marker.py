@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from stepgen import __version__
 
 MARKER = "extras/stepgen.json"
+LARGEST_MARKER_BYTES = 1 << 20  # what is longer is none of stepgen's, and cut off no JSON
 _GENERATOR = "stepgen"
 
 
@@ -51,7 +52,10 @@ def read_marker(folder: Path) -> dict[str, str] | None:
     None where there is no marker, or what is there is none of stepgen's.
     """
     path = folder / MARKER
-    return parse_marker(path.read_bytes()) if path.is_file() else None
+    if not path.is_file():
+        return None
+    with path.open("rb") as stream:
+        return parse_marker(stream.read(LARGEST_MARKER_BYTES))
 
 
 def parse_marker(content: bytes) -> dict[str, str] | None:

@@ -22,6 +22,7 @@ from stepgen.library.text import comment_lines
 from stepgen.library.timings import TimerView, timer_view
 from stepgen.plan.model import MotorPlan, Plan
 
+_LARGEST_UINT16, _LARGEST_UINT32 = 0xFFFF, 0xFFFF_FFFF
 _EXAMPLE_SPEED_SPS = 200  # slow enough for any motor, a 28BYJ-48 included
 
 
@@ -160,12 +161,15 @@ def _turns(motor: MotorPlan) -> Turns | None:
     steps = motor.steps_per_turn
     if steps is None:
         return None
+    fitting = int(_LARGEST_UINT32 / steps)
+    limit = f", for up to {fitting} turns" if fitting < _LARGEST_UINT16 else ""
     if steps.denominator == 1:
-        return Turns(f"turns * {steps.numerator}UL", f"Steps for whole turns: {steps} in each.")
+        comment = f"Steps for whole turns: {steps} in each{limit}."
+        return Turns(f"turns * {steps.numerator}UL", comment)
     half = steps.denominator // 2
     return Turns(
         f"static_cast<uint32_t>((turns * {steps.numerator}ULL + {half}) / {steps.denominator})",
-        f"Steps for whole turns, rounded: {float(steps):.6g} in each.",
+        f"Steps for whole turns, rounded: {float(steps):.6g} in each{limit}.",
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from jinja2.ext import Extension
 
-from stepgen.library.text import block, c_comment, c_string, more, properties_value, tidy
+from stepgen.library.text import block, c_comment, c_string, markdown, more, properties_value, tidy
 from stepgen.library.view import LibraryView, make_view
 from stepgen.plan.model import Plan
 
@@ -74,6 +74,7 @@ def environment(templates: Path | None = None) -> Environment:
         more=more,
         c_comment=c_comment,
         c_string=c_string,
+        markdown=markdown,
         properties_value=properties_value,
     )
     return made

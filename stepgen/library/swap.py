@@ -9,7 +9,7 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import mkdtemp
@@ -25,6 +25,17 @@ _NEW, _OLD = "new", "old"
 _AT_FDCWD = -100  # <fcntl.h>: paths are relative to the working directory
 _RENAME_EXCHANGE = 2  # <linux/fs.h>
 _NO_LOCKS_HERE = (errno.EBADF, errno.ENOLCK, errno.ENOTSUP, errno.EINVAL)
+
+
+Spare = Callable[[Path], bool]
+"""Tells whether a folder that is to be removed holds files that are not stepgen's."""
+
+
+def spare_nothing(_folder: Path) -> bool:
+    """
+    Tell so of no folder: for files, which are stepgen's as a whole.
+    """
+    return False
 
 
 @contextmanager
@@ -84,17 +95,36 @@ def _lock(descriptor: int, folder: Path) -> bool:
             return True
 
 
-def recover(target: Path) -> None:
+def recover(target: Path, spare: Spare) -> None:
     """
     Tidy up after runs that were killed: bring the old *target* back if it is missing.
 
     Only for who holds the lock, since it removes what another run may still be working on.
+
+    Raises:
+        StepgenError: *spare* says that a killed run left files there that are not stepgen's.
     """
     for staging in sorted(target.parent.glob(f"{glob.escape(_prefix(target))}*")):
         old = staging / _OLD
         if old.is_dir() and not os.path.lexists(target):
             old.rename(target)
-        shutil.rmtree(staging, ignore_errors=True)
+        _remove(staging, target, spare)
+        if spare(staging / _NEW) or spare(old):
+            reason = (
+                "holds files that stepgen did not write, left there by a run that was killed; "
+                "move them elsewhere and remove the folder"
+            )
+            raise StepgenError.of(reason, place=str(staging))
+
+
+def _remove(staging: Path, target: Path, spare: Spare) -> None:
+    """
+    Remove *staging*, but not an old *target* that could not be put back, nor what to *spare*.
+    """
+    old = staging / _OLD
+    if (old.is_dir() and not os.path.lexists(target)) or spare(old) or spare(staging / _NEW):
+        return
+    shutil.rmtree(staging, ignore_errors=True)
 
 
 def _prefix(target: Path) -> str:
@@ -103,7 +133,7 @@ def _prefix(target: Path) -> str:
 
 
 @contextmanager
-def _staging(target: Path) -> Iterator[Path]:
+def _staging(target: Path, spare: Spare) -> Iterator[Path]:
     """
     Make a folder beside *target*, on the same file system; it goes away whatever happens.
     """
@@ -111,10 +141,13 @@ def _staging(target: Path) -> Iterator[Path]:
     try:
         yield folder
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        with suppress(OSError):
+            _remove(folder, target, spare)
 
 
-def replace_folder(contents: Mapping[str, bytes], target: Path) -> None:
+def replace_folder(
+    contents: Mapping[str, bytes], target: Path, judge: Callable[[Path], None], spare: Spare
+) -> None:
     """
     Make *target* a folder that holds exactly *contents*, path -> bytes, in one instant.
 
@@ -122,29 +155,50 @@ def replace_folder(contents: Mapping[str, bytes], target: Path) -> None:
     the system cannot exchange two folders, the old one steps aside first; a kill in between
     leaves it beside *target*, and `recover` brings it back.
 
+    Args:
+        contents: What to write.
+        target: The folder.
+        judge: Looks once more at the old folder, which nobody else can reach any more, before it
+            is removed: if somebody has saved a file there in the last moment, it raises, and
+            the old folder comes back.
+        spare: Tells whether a folder holds files that must not be removed.
+
     Raises:
-        OSError: Something cannot be written; *target* is then as it was.
+        OSError: Something cannot be written; *target* is then whole, the old one or, if
+            only flushing it failed, the new one.
     """
-    with _staging(target) as staging:
+    with _staging(target, spare) as staging:
         new = staging / _NEW
         for path, content in contents.items():
             write_durably(new / path, content)
         for folder, _, _ in os.walk(new):
             _flush_folder(Path(folder))
-        if not os.path.lexists(target):
+        if os.path.lexists(target):
+            old = _change_places(new, target)
+            try:
+                judge(old)
+            except StepgenError:
+                _change_places(old, target)
+                raise
+        else:
             new.rename(target)
-        elif not exchange(new, target):
-            _step_aside(new, target, staging / _OLD)
         _flush_folder(target.parent)
 
 
-def _step_aside(new: Path, target: Path, old: Path) -> None:
+def _change_places(new: Path, target: Path) -> Path:
+    """
+    Put *new* in the place of *target*; return where the old one is now.
+    """
+    if exchange(new, target):
+        return new
+    old = new.with_name(_OLD if new.name == _NEW else _NEW)
     target.rename(old)
     try:
         new.rename(target)
     except OSError:
         old.rename(target)
         raise
+    return old
 
 
 def replace_file(content: bytes, target: Path) -> None:
@@ -154,7 +208,7 @@ def replace_file(content: bytes, target: Path) -> None:
     Raises:
         OSError: It cannot be written; *target* is then as it was.
     """
-    with _staging(target) as staging:
+    with _staging(target, spare_nothing) as staging:
         write_durably(staging / _NEW, content)
         (staging / _NEW).replace(target)
         _flush_folder(target.parent)

@@ -28,9 +28,23 @@ def c_string(text: str) -> str:
 
 def properties_value(text: str) -> str:
     """
-    Return *text* as a value of library.properties: one line.
+    Return *text* as a value of library.properties: one line without HTML.
+
+    The IDE's library manager may show it as HTML. A blank behind ``<`` makes a tag plain text;
+    an address such as ``<ada@example.org>`` is no tag that anything knows, and stays.
     """
-    return re.sub(r"\s+", " ", c_comment(text))
+    line = re.sub(r"\s+", " ", c_comment(text))
+    return re.sub(r"<(?![\w.+-]+@[\w.-]+>)(?=[A-Za-z/!?])", "< ", line)
+
+
+def markdown(text: str) -> str:
+    """
+    Return *text* as a paragraph of Markdown that shows it as it is: no HTML, link or heading.
+
+    Source: CommonMark 0.31, 2.4: a backslash before ASCII punctuation makes it plain.
+    """
+    plain = re.sub(r"([\\`*_{}\[\]<>#|~&!:@])", r"\\\1", c_comment(text))
+    return re.sub(r"^(?=[-+=])", r"\\", re.sub(r"^(\d+)(?=[.)])", r"\1\\", plain))
 
 
 def block(text: str, width: int = 0) -> str:

@@ -65,16 +65,22 @@ def write_library(files: Mapping[str, str], target: Path, *, force: bool = False
         StepgenError: *target* is refused (see `refusals`) or cannot be written.
     """
     contents = with_marker(files)
+
+    def judge(old: Path) -> None:
+        reason = _not_replaceable(contents, old, force=force)
+        if reason:
+            raise StepgenError.of(reason, place=str(target))
+
     with os_errors(target):
         _refuse_place(target)
         target.parent.mkdir(parents=True, exist_ok=True)
         with locked(target.parent) as alone:
             if alone:
-                recover(target)
+                recover(target, _holds_foreign)
             _refuse(contents, target, force=force)
             result = _compare(contents, target)
             if not result.is_fresh:
-                replace_folder(contents, target)
+                replace_folder(contents, target, judge, _holds_foreign)
             return result
 
 
@@ -135,10 +141,13 @@ def _refuse(contents: Mapping[str, bytes], target: Path, *, force: bool) -> None
 
 
 def _refusals(contents: Mapping[str, bytes], target: Path, *, force: bool) -> list[Fault]:
-    reason = _no_place(target) or _wrong_kind(target) or _foreign(target)
-    if not reason and not force:
-        reason = _edited(contents, target)
+    reason = _no_place(target) or _not_replaceable(contents, target, force=force)
     return [Fault(str(target), "", reason)] if reason else []
+
+
+def _not_replaceable(contents: Mapping[str, bytes], target: Path, *, force: bool) -> str:
+    reason = _wrong_kind(target) or _foreign(target)
+    return reason if reason or force else _edited(contents, target)
 
 
 def _wrong_kind(target: Path) -> str:
@@ -169,6 +178,15 @@ def _foreign(target: Path) -> str:
         f"holds files that stepgen did not write ({_listed(foreign)}) and would lose them; "
         "move them elsewhere or name another folder"
     )
+
+
+def _holds_foreign(folder: Path) -> bool:
+    """
+    Tell whether *folder* is a library of stepgen's with other files in it.
+
+    What a run was still writing has no marker yet, or no file that is not in it.
+    """
+    return read_marker(folder) is not None and bool(_foreign(folder))
 
 
 def _edited(contents: Mapping[str, bytes], target: Path) -> str:

@@ -53,8 +53,10 @@ class HotPath:
 
     Args:
         usual: From the vector to RETI, when nothing but a step is due.
+        boundary: What follows label 1: the last step of a run, then the boundary handler. It
+            comes right behind *usual*: the BREQ that leads there reaches 63 words, and a step on
+            four ports takes 61.
         clock: What follows label 3: a look at the clock; empty where no motion needs one.
-        boundary: What follows label 1: the last step of a run, then the boundary handler.
         usual_cycles: Response, vector, all of *usual* on the way of a step.
         lap_cycles: The same of interrupts without a step, in order of length; empty where none is.
         overrun_cycles: How late an interrupt begins, from its flag to the response, where its step
@@ -67,8 +69,8 @@ class HotPath:
     """
 
     usual: tuple[Instruction, ...]
-    clock: tuple[Instruction, ...]
     boundary: tuple[Instruction, ...]
+    clock: tuple[Instruction, ...]
     usual_cycles: int
     lap_cycles: tuple[int, ...]
     overrun_cycles: int | None
@@ -144,8 +146,8 @@ def compose(
     due = until_count + looked if watches_clock else until_rare_step + 1
     return HotPath(
         usual=(*entry, *gate.instructions, *onward),
-        clock=clock,
         boundary=(*think, *rare_step, *out),
+        clock=clock,
         usual_cycles=usual_cycles,
         lap_cycles=tuple(until_gate + cycles for cycles in gate.lap_cycles),
         overrun_cycles=None if overrun is None else overrun - until_gate,
@@ -159,7 +161,7 @@ def compose(
 
 def _clock_watch() -> tuple[tuple[Instruction, ...], tuple[Instruction, ...]]:
     """
-    Return the test whether to look at the clock, and the look: label 3, back to 4 or on to 2.
+    Return the test whether to look at the clock, and the look: label 3, back to 4 or to 2.
 
     The lower 16 bits of millis() less the moment to wake up at: negative as long as it is not
     there, since that moment is never set further ahead than 32 767 ms.
@@ -179,7 +181,7 @@ def _clock_watch() -> tuple[tuple[Instruction, ...], tuple[Instruction, ...]]:
         Instruction("sbc   r24, r25", 1),
         Instruction("pop   r25", 2),
         Instruction("sbrs  r24, 7", 2, "negative: not yet"),
-        Instruction("rjmp  2f", 0),
+        Instruction("rjmp  2b", 0),
         Instruction("rjmp  4b", 2),
     )
     return look, clock

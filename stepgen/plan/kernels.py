@@ -81,9 +81,10 @@ class Ring:
         """
         thinking = 104 + 11 * len(self.writes)
         more = len(self.writes) - 1
+        far = sum(not share.port.port.in_io for share in self.ports)  # LDS and STS, not IN and OUT
         return HandlerCycles(
             longest=162 + 3 * more,
-            masked=9 * more,
+            masked=9 * more + 8 * far,
             to_clock=77,
             to_clock_thinking=thinking,
         )

@@ -11,14 +11,15 @@ from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedBase, CommentedMap, CommentedSeq
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.constructor import RoundTripConstructor
+from ruamel.yaml.error import MarkedYAMLError
 
 from stepgen.errors import StepgenError
+from stepgen.spec.yaml_guard import HIDDEN, hidden_character, unwanted
 
 Location = Sequence[str | int]
-MAXIMUM_BYTES = 256 * 1024
-MAXIMUM_DEPTH = 12
-_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]+")  # would make a mess of a terminal
+MAXIMUM_BYTES = 64 * 1024
+LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Document:
             node = node[step]
             on_key = isinstance(node, CommentedBase)
         text = "" if on_key or node is None else f"{_scalar(node)!s:.80}"
-        return f"{self.path}:{line + 1}:{column + 1}", _CONTROL.sub(" ", text)
+        return _place(self.path, line, column), " ".join(text.split())
 
 
 def _mark(node: object, step: str | int) -> tuple[int, int] | None:
@@ -70,26 +71,56 @@ def read_document(path: Path) -> Document:
 
     Raises:
         StepgenError: It cannot be read, is too large, is no YAML mapping, or holds what a
-            spec never needs (several documents, anchors, tags, deep nesting).
+            spec never needs (see `stepgen.spec.yaml_guard.unwanted`).
     """
     text = _read_text(path)
     try:
-        tree = YAML(typ="rt", pure=True).load(text)
+        refused = unwanted(text)
+        tree = None if refused else _yaml().load(text)
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        place = f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else str(path)
+        place = _place(path, mark.line, mark.column) if mark else str(path)
         raise StepgenError.of(_yaml_problem(error), place=place) from None
-    except (YAMLError, RecursionError, ValueError) as error:
-        raise StepgenError.of(f"cannot be read as YAML: {error}", place=str(path)) from None
+    except Exception as error:  # noqa: BLE001 - ruamel.yaml lets ValueError and others out
+        reason = f"cannot be read as YAML ({error}); compare it with a spec that can"
+        raise StepgenError.of(reason, place=_place(path, 0, 0)) from None
+    if refused:
+        (line, column), reason = refused
+        raise StepgenError.of(reason, place=_place(path, line, column))
     if not isinstance(tree, CommentedMap) or not tree:
         raise StepgenError.of(
             "holds no spec; a spec begins with `library:`, `board:` and `motors:`",
-            place=f"{path}:1:1",
+            place=_place(path, 0, 0),
         )
-    return Document(path, text, _plain(tree, path, (0, 0)), tree)
+    return Document(path, text, _plain(tree), tree)
 
 
-def _read_text(path: Path) -> str:
+def _place(path: Path, line: int, column: int) -> str:
+    return f"{path}:{line + 1}:{column + 1}"
+
+
+class _Constructor(RoundTripConstructor):
+    """
+    Ruamel's, but a date stays the text that it is.
+    """
+
+
+_Constructor.add_constructor("tag:yaml.org,2002:timestamp", RoundTripConstructor.construct_scalar)
+
+
+def _yaml() -> YAML:
+    yaml = YAML(typ="rt", pure=True)
+    yaml.Constructor = _Constructor
+    return yaml
+
+
+def read_bytes(path: Path) -> bytes:
+    """
+    Return what the file *path* holds, if it may be a spec.
+
+    Raises:
+        StepgenError: It is no regular file, cannot be read, or is larger than `MAXIMUM_BYTES`.
+    """
     try:
         if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():
             reason = "is no regular file; name the YAML file of a spec"
@@ -102,12 +133,30 @@ def _read_text(path: Path) -> str:
     if len(raw) > MAXIMUM_BYTES:
         reason = f"is larger than {MAXIMUM_BYTES // 1024} KiB; a spec is a few dozen lines"
         raise StepgenError.of(reason, place=str(path))
+    return raw
+
+
+def _read_text(path: Path) -> str:
+    raw = read_bytes(path)
     try:
-        return raw.decode("utf-8-sig")
+        text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = raw[: error.start].count(b"\n") + 1
         reason = "is not UTF-8; save the file with that encoding"
-        raise StepgenError.of(reason, place=f"{path}:{line}:1") from None
+        before = raw[: error.start].decode("utf-8-sig")
+        raise StepgenError.of(reason, place=_place(path, *_end(before))) from None
+    reason = hidden_character(text)
+    if reason:
+        before = HIDDEN.split(text, maxsplit=1)[0]
+        raise StepgenError.of(reason, place=_place(path, *_end(before)))
+    return text
+
+
+def _end(text: str) -> tuple[int, int]:
+    """
+    Return line and column behind *text*, counted from 0.
+    """
+    lines = LINE_END.split(text)
+    return len(lines) - 1, len(lines[-1])
 
 
 def _yaml_problem(error: MarkedYAMLError) -> str:
@@ -115,41 +164,18 @@ def _yaml_problem(error: MarkedYAMLError) -> str:
     if problem.startswith("found duplicate key"):
         key = problem.removeprefix("found duplicate key ").split(" with value")[0]
         return f"the key {key} is given twice; remove one of them"
-    return f"is no YAML: {problem}"
+    return f"is no YAML: {problem}; look at the quotes, brackets and indentation before it"
 
 
-def _plain(
-    node: Any,  # noqa: ANN401 - YAML is any data
-    path: Path,
-    mark: tuple[int, int],
-    depth: int = 0,
-) -> Any:  # noqa: ANN401 - YAML is any data
+def _plain(node: Any) -> Any:  # noqa: ANN401 - YAML is any data
     """
-    Return *node*, which stands at *mark*, as dicts, lists and scalars of Python's own types.
+    Return *node* as dicts, lists and scalars of Python's own types.
     """
-    place = f"{path}:{mark[0] + 1}:{mark[1] + 1}"
-    if depth > MAXIMUM_DEPTH:
-        raise StepgenError.of("is nested too deeply for a spec; remove a level", place=place)
-    if _is_marked(node):
-        raise StepgenError.of("tags and anchors have no use in a spec; remove it", place=place)
     if isinstance(node, CommentedMap):
-        return {
-            _scalar(key): _plain(value, path, node.lc.value(key), depth + 1)
-            for key, value in node.items()
-        }
+        return {_scalar(key): _plain(value) for key, value in node.items()}
     if isinstance(node, CommentedSeq):
-        return [
-            _plain(value, path, node.lc.item(index), depth + 1) for index, value in enumerate(node)
-        ]
+        return [_plain(value) for value in node]
     return _scalar(node)
-
-
-def _is_marked(node: Any) -> bool:  # noqa: ANN401 - YAML is any data
-    """
-    Tell whether *node* has a tag or an anchor, or takes over what stands elsewhere (``<<``).
-    """
-    marks = (getattr(getattr(node, name, None), "value", None) for name in ("tag", "anchor"))
-    return any(marks) or bool(getattr(node, "merge", None))
 
 
 def _scalar(value: Any) -> Any:  # noqa: ANN401 - YAML is any data

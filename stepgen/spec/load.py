@@ -26,14 +26,14 @@ _FIELD_REASONS = {
     ("string_pattern_mismatch", "version"): (
         "is no version; write three numbers in quotes, such as 1.0.0"
     ),
-    ("string_pattern_mismatch", "url"): (
-        "is no address of a page; write one such as https://example.org/motor"
-    ),
     ("string_type", "version"): "is no version; write three numbers in quotes, such as 1.0.0",
     ("string_type", "[key]"): "is no name; write one that begins with a letter, such as pan",
     ("missing", "pins"): "pins is missing; add `pins: [...]`, those of the coils A, B, C and D",
     ("greater_than_equal", "isr_cycles"): (
         "is too few for any interrupt; write the most CPU cycles that a step may take, such as 200"
+    ),
+    ("string_pattern_mismatch", "url"): (
+        "is no address of a page; write one that begins with https:// or http://, without blanks"
     ),
     ("model_type", "steps_per_turn"): (
         "is no number of steps; write a whole number such as 200, or full_steps and gear"
@@ -47,11 +47,22 @@ _REASONS = {
     "model_type": "{field} needs fields of its own; write them indented below it",
     "dict_type": "{field} needs fields of its own; write them indented below it",
     "string_type": "{field} must be text; put it in quotes",
-    "int_type": "{field} must be a whole number",
+    "string_unicode": "{field} must be text of whole characters; write it without escapes",
+    "string_too_long": "{field} is too long; write at most {max_length} characters",
+    "int_type": "{field} must be a whole number; write it in digits, without quotes",
+    "bool_type": "{field} is either; write true or false",
+    "tuple_type": "{field} must be a list; write it in brackets, [..]",
+    "too_long": "{field} has too many entries; write at most {max_length}",
+    "greater_than_equal": "{field} is too small; write {ge} or more",
+    "less_than_equal": "{field} is too large; write {le} or less",
+    "invalid_key": "is no name of a field; remove it, or put it in quotes",
+    "model_attributes_type": "{field} needs fields of its own; write them indented below it",
     "literal_error": "is not possible for {field}; write {expected}",
     "union_tag_invalid": '"{tag}" is unknown; choose one of {expected_tags}',
     "union_tag_not_found": "has no kind; add `kind: ...`",
-    "string_pattern_mismatch": "{field} must be one line of text without control characters",
+    "string_pattern_mismatch": (
+        "{field} must be one line of text without control characters; write it in one line"
+    ),
 }
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -143,4 +154,5 @@ def _reason(details: ErrorDetails) -> str:
     message = details["msg"][:1].lower() + details["msg"][1:]
     reason = _ENTRY_REASONS.get(kind) if is_entry else None
     reason = reason or _FIELD_REASONS.get((kind, field)) or _REASONS.get(kind, "{field}: {message}")
-    return reason.format(field=field, message=message, **details.get("ctx", {}))
+    text = reason.format(field=field, message=message, **details.get("ctx", {}))
+    return " ".join(text.split())  # a name may hold line ends, and a fault is one line

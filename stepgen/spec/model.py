@@ -26,15 +26,27 @@ _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
 _HELPER_PREFIXES = frozenset(
     {"millis", "check", "choose", "print", "debug", "enables", "motorTimer", "timer0"}
 )
-# Headers of the Arduino core and of libraries that come with it, and names that are no folder on
-# Windows; in lower case, since file names there and on macOS do not tell it apart.
+# Headers of the Arduino core, of libraries that come with it or with the IDE, and of the C library
+# and the compiler (a library stdint would take the place of <stdint.h>), and names that are no
+# folder on Windows; in lower case, since file names there and on macOS do not tell it apart.
 _DEVICES = {f"{device}{digit}" for device in ("com", "lpt") for digit in range(1, 10)}
 _CORE_HEADERS = """
-    arduino binary cdc client eeprom hardwareserial hid ipaddress main new pins_arduino
-    pluggableusb print printable server servo softwareserial spi stream udp usbapi usbcore
-    usbdesc wcharacter wire wiring_private wstring con prn aux nul
+    arduino binary cdc client eeprom hardwareserial hardwareserial_private hid ipaddress main new
+    pins_arduino pluggableusb print printable server servo softwareserial spi stream udp usbapi
+    usbcore usbdesc wcharacter wire wiring_private wstring con prn aux nul
 """
-_TAKEN_NAMES = _DEVICES | set(_CORE_HEADERS.split())
+_IDE_LIBRARIES = """
+    bridge esplora ethernet firmata gsm keyboard liquidcrystal mouse robot_control robot_motor
+    robotirremote sd spacebrewyun stepper temboo tft wifi
+"""
+_C_HEADERS = """
+    alloca assert ctype errno fcntl float inttypes iso646 limits locale math setjmp signal stdalign
+    stdarg stdatomic stdbool stddef stdfix stdint stdio stdlib stdnoreturn string syslimits tgmath
+    time unistd unwind varargs
+"""
+_TAKEN_NAMES = _DEVICES | {*_CORE_HEADERS.split(), *_IDE_LIBRARIES.split(), *_C_HEADERS.split()}
+_MOST_MOTORS = 16  # no chip has as many timers; more would only make reports long
+_LONGEST_ISR_CYCLES = 1_000_000  # a sixteenth of a second
 SHORT_FORMS = {"timer": "timing", "pins": "drive", "sequence": "drive"}
 _DEFAULT_KINDS = {"timing": "fast-pwm", "motion": "constant"}
 _CATEGORIES = Literal[
@@ -49,13 +61,19 @@ _CATEGORIES = Literal[
     "Other",
 ]
 
-Line = Annotated[str, StringConstraints(strip_whitespace=True, pattern=r"^[^\x00-\x1f\x7f]*$")]
+Line = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, pattern=r"^[^\x00-\x1f\x7f]*$", max_length=1000),
+]
 """One line of text: no control characters, so that it cannot end a comment or a property."""
 
-Address = Annotated[Line, StringConstraints(pattern=r"^https?://[^\s/]+(/\S*)?$")]
-"""The address of a page."""
+Url = Annotated[str, StringConstraints(pattern=r"^https?://[!#-;=?-\[\]_a-z~%]+$", max_length=500)]
+"""A page that the IDE opens when its link is clicked: nothing but http and https."""
 
-Version = Annotated[str, StringConstraints(pattern=r"^\d+\.\d+\.\d+$")]
+_VERSION_PART = "(0|[1-9][0-9]{0,4})"
+Version = Annotated[
+    str, StringConstraints(pattern=rf"^{_VERSION_PART}\.{_VERSION_PART}\.{_VERSION_PART}$")
+]
 
 
 class Library(SpecModel):
@@ -75,7 +93,7 @@ class Library(SpecModel):
     """What it does, in one sentence; the library manager shows it."""
     paragraph: Line | None = None
     """What follows the sentence there."""
-    url: Address = "https://docs.arduino.cc/libraries/"
+    url: Url = "https://docs.arduino.cc/libraries/"
     """The address of a page about the library."""
     category: _CATEGORIES = "Device Control"
     """Where the library manager lists it."""
@@ -89,8 +107,8 @@ class Library(SpecModel):
             )
         if self.name.lower() in _TAKEN_NAMES:
             raise ValueError(
-                f'"{self.name}" is a header of the Arduino core, a library that comes with it, or '
-                f"a device; choose another name, such as My{self.name}"
+                f'"{self.name}" is a header of the Arduino core or of C, a library that comes with '
+                f"the IDE, or a device; choose another name, such as My{self.name}"
             )
         return self
 
@@ -128,7 +146,7 @@ class Budget(SpecModel):
     What a motor may take of the chip at most; ``stepgen verify`` fails where it can take more.
     """
 
-    isr_cycles: Annotated[int, Field(ge=1)]
+    isr_cycles: Annotated[int, Field(ge=1, le=_LONGEST_ISR_CYCLES)]
     """The most CPU cycles that one run of the step interrupt may take."""
 
 
@@ -185,7 +203,7 @@ class Spec(SpecModel):
     """The library's name, or a mapping with its metadata."""
     board: str
     """The board, as `stepgen boards` names it."""
-    motors: Annotated[dict[MotorName, MotorEntry], Field(min_length=1)]
+    motors: Annotated[dict[MotorName, MotorEntry], Field(min_length=1, max_length=_MOST_MOTORS)]
     """The motors by name; a name is a lower-case letter and up to 30 letters or digits."""
     uses: Annotated[tuple[str, ...], Field(strict=False)] = ()
     """What else the sketch uses of the chip, such as `Servo`, `Serial` or `analogWrite D5`."""

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from stepgen.spec.base import short_form
 
-_PIN = re.compile(r"D?\d{1,3}|A\d{1,2}|P[A-L][0-7]", re.IGNORECASE)
+_PIN = re.compile(r"D?\d{1,3}|A\d{1,2}|P[A-L][0-7]", re.IGNORECASE | re.ASCII)
 
 
 def _pin_name(value: Any) -> str:  # noqa: ANN401 - whatever the YAML held

@@ -2,29 +2,33 @@
 Steps in one turn: a whole number, or full steps of the motor times its gear.
 """
 
+import re
 from decimal import Decimal
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from stepgen.spec.base import SpecModel, short_form
 
 _LARGEST = 1_000_000
+# As people write a gear. Fraction() takes more, such as 1e999999999, and then works for hours.
+_RATIO = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12}|/[0-9]{1,12})?")
+_NO_NUMBER = "is no number; write 64, 63.68395 or a fraction such as 25792/405"
 
 
 def _fraction(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError("is no number; write 64, 63.68395 or a fraction such as 25792/405")  # noqa: TRY004 - for pydantic
+        raise ValueError(_NO_NUMBER)  # noqa: TRY004 - for pydantic
+    if isinstance(value, str) and not _RATIO.fullmatch(value):
+        raise ValueError(_NO_NUMBER)
     try:
         # A float's shortest text is what the user typed; its binary value is not.
         number = Fraction(value) if isinstance(value, str) else Fraction(Decimal(str(value)))
     except (ValueError, ArithmeticError):
-        raise ValueError(
-            "is no number; write 64, 63.68395 or a fraction such as 25792/405"
-        ) from None
+        raise ValueError(_NO_NUMBER) from None
     if not 0 < number <= _LARGEST or number.denominator > _LARGEST:
-        raise ValueError(f"is out of range; it must be above 0 and at most {_LARGEST}")
+        raise ValueError(f"is out of range; write one above 0 and at most {_LARGEST}")
     return number
 
 
@@ -41,6 +45,12 @@ class StepsPerTurn(SpecModel):
     """Full steps of the bare motor in one turn."""
     gear: Ratio = Fraction(1)
     """Turns of the motor in one of the shaft: 64, 63.68395 or 25792/405; kept exactly."""
+
+    @model_validator(mode="after")
+    def _a_turn_is_countable(self) -> Self:
+        if self.exact > _LARGEST:
+            raise ValueError("makes more than a million full steps in a turn; take a smaller gear")
+        return self
 
     @property
     def exact(self) -> Fraction:

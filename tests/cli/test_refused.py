@@ -13,7 +13,15 @@ from typer.testing import CliRunner, Result
 from stepgen.cli import app
 
 ROOT = Path(__file__).resolve().parents[2]
-REFUSED = sorted((ROOT / "specs" / "refused").iterdir())
+FOLDER = ROOT / "specs" / "refused"
+REFUSED = sorted(FOLDER.glob("*.yaml"))
+TABLE = (FOLDER / "README.md").read_text(encoding="utf-8")
+FILE_ROW = re.compile(r"^\| `(\w+\.yaml)` \| (.+) \|$", re.MULTILINE)
+TEST_ROW = re.compile(r"^\| .+ \| `(tests/[\w/]+\.py)::(test_\w+)` \|$", re.MULTILINE)
+WAY_OUT = re.compile(
+    r"\b(?:add|choose|give|lists|look|make|move|name|put|remove|rename|save|shorten|split|take|use"
+    r"|write|compare|knows|begins|runs?)\b"
+)
 FIRST_LINE = re.compile(rb"# refused: (.+)\n")
 
 
@@ -27,12 +35,28 @@ def _run(*arguments: str | Path) -> Result:
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
-def test_there_are_enough_of_them() -> None:
+def test_the_table_is_that_of_the_folder() -> None:
     """
-    Bad input of every kind is collected, as YAML files and nothing else.
+    README.md lists each file with its words, at least 60, and nothing else is in the folder.
     """
-    assert len(REFUSED) >= 20
-    assert {path.suffix for path in REFUSED} == {".yaml"}
+    rows = FILE_ROW.findall(TABLE)
+
+    assert len(REFUSED) >= 60
+    assert sorted(name for name, _ in rows) == [path.name for path in REFUSED]
+    shown = {name: words.replace("&lt;", "<") for name, words in rows}
+    assert shown == {path.name: _words(path) for path in REFUSED}
+    assert {path.name for path in FOLDER.iterdir()} == {"README.md", *shown}
+
+
+def test_the_table_names_tests_that_there_are() -> None:
+    """
+    What cannot be a file of the folder has a test, which README.md names.
+    """
+    rows = TEST_ROW.findall(TABLE)
+
+    assert len(rows) == TABLE.count("| `tests/") > 20
+    for path, name in rows:
+        assert f"\ndef {name}(" in (ROOT / path).read_text(encoding="utf-8"), (path, name)
 
 
 @pytest.mark.parametrize("path", REFUSED, ids=lambda path: path.stem)
@@ -48,6 +72,7 @@ def test_check_says_what_is_wrong_and_where(path: Path) -> None:
     assert len(reports) == 1
     place, _, message = reports[0].partition(": error: ")
     assert _words(path) in message
+    assert WAY_OUT.search(message)
     assert re.fullmatch(rf"{re.escape(str(path))}:[1-9]\d*:[1-9]\d*", place)
     assert "Traceback" not in run.stderr
     assert isinstance(run.exception, SystemExit)

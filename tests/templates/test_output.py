@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from markdown_it import MarkdownIt
 from ruamel.yaml import YAML
 
 from stepgen import api
@@ -35,14 +36,30 @@ HOSTILE = (
     "{{ library.name }} %% for x in y {% raw %}",
     "%% set evil = 1",
     "name=Evil",
-    "tab\tnewline\nreturn\rnull\0bell\a",
     'R"(raw)" \\u000a \\n %s ${HOME} `id` $(id) <b>&amp;</b>',
     "in between \\ " * 12,
     "??/ ??/ ??/ " * 12,
-    "\u2028\u2029\x85 separators of lines elsewhere",
     "#define evil",
     "long " * 60,
+    "# a heading",
+    "[link](javascript:alert(1)) ![picture](https://example.org/pixel.png)",
+    "<script>alert(1)</script> <!-- <?php <img src=x onerror=alert(1)>",
+    "```",
+    "1. a list",
+    "- another | with | bars",
+    "ada@example.org, https://example.org and <ada@example.org>",
 )
+HIDDEN = (
+    "tab\tnewline\nreturn\rnull\0bell\a",
+    "escape\x1b[2J",
+    "\u2028\u2029 separators of lines elsewhere",
+    "\x85 another",
+    "\u202e direction of writing",
+    "\u2066 another\u2069",
+    "zero\u200bwidth",
+    "\ufeff mark in the middle",
+)
+TAGS = re.compile(r"<[A-Za-z/!?](?![\w.+-]*@[\w.-]+>)")
 
 
 def _spec(**library: str) -> dict[str, Any]:
@@ -116,14 +133,15 @@ def test_hostile_metadata_stays_text(tmp_path: Path, text: str) -> None:
     """
     Author, sentence and the rest are data in every file, whatever they hold.
     """
-    line = re.sub(r"[\x00-\x1f\x7f]", " ", text)
     fields = ("author", "maintainer", "sentence", "paragraph")
     plain = _generate(tmp_path, _spec(**dict.fromkeys(fields, "plain")))
-    files = _generate(tmp_path, _spec(**dict.fromkeys(fields, line)))
+    files = _generate(tmp_path, _spec(**dict.fromkeys(fields, text)))
 
     assert files.keys() == plain.keys()
     _check_properties(files["library.properties"], plain["library.properties"])
-    assert json.loads(files["library.json"])["authors"][0]["name"] == line.strip()
+    assert json.loads(files["library.json"])["authors"][0]["name"] == text.strip()
+    assert _shown(files["README.md"]) == _shown(plain["README.md"])
+    assert files["LICENSE"].count("\n") == plain["LICENSE"].count("\n")
     assert files["keywords.txt"] == plain["keywords.txt"]
     for name in ("src/Mine.h", "src/Mine.cpp", "examples/Turn/Turn.ino"):
         assert _code(files[name]) == _code(plain[name]), name
@@ -131,13 +149,26 @@ def test_hostile_metadata_stays_text(tmp_path: Path, text: str) -> None:
 
 def _check_properties(text: str, plain: str) -> None:
     """
-    Check that there is one line for each key, and that the keys are those of *plain*.
+    Check that there is one line for each key, that the keys are those of *plain*, and no HTML.
     """
+    assert not TAGS.search(text)
     lines = text.removesuffix("\n").split("\n")
     assert all(PROPERTY.fullmatch(line) for line in lines)
     assert [line.split("=")[0] for line in lines] == [
         line.split("=")[0] for line in plain.removesuffix("\n").split("\n")
     ]
+
+
+def _shown(markdown: str) -> list[str]:
+    """
+    Return what *markdown* is made of, but for the words of its first paragraph.
+
+    Of that remains that it is nothing but text.
+    """
+    tokens = MarkdownIt().enable("table").parse(markdown)
+    first = next(token for token in tokens[3:] if token.type == "inline")
+    assert {child.type for child in first.children or ()} == {"text"}
+    return [token.type for token in tokens]
 
 
 def _code(text: str) -> list[str]:
@@ -148,16 +179,27 @@ def _code(text: str) -> list[str]:
     return [line for line in joined.split("\n") if line and not line.startswith("//")]
 
 
-@pytest.mark.parametrize("text", [text for text in HOSTILE if re.search(r"[\x00-\x1f\x7f]", text)])
-def test_control_characters_are_refused_in_metadata(tmp_path: Path, text: str) -> None:
+@pytest.mark.parametrize("text", HIDDEN)
+def test_hidden_characters_are_refused_in_metadata(tmp_path: Path, text: str) -> None:
     """
-    Text with control characters does not even reach the doors.
+    Text with control characters or marks that nobody sees does not even reach the doors.
     """
-    with pytest.raises(StepgenError, match="one line of text without control characters"):
+    with pytest.raises(StepgenError, match="which nobody sees; remove it"):
         _generate(tmp_path, _spec(author=text))
 
 
-@pytest.mark.parametrize("text", HOSTILE)
+@pytest.mark.parametrize("url", ["javascript:alert(1)", "file:///etc/passwd", "https://a b", "x"])
+def test_a_link_leads_to_a_page(tmp_path: Path, url: str) -> None:
+    """
+    The IDE opens `url` when it is clicked, so that it is http or https and nothing else.
+    """
+    with pytest.raises(StepgenError, match="is no address of a page; write one that begins"):
+        _generate(tmp_path, _spec(url=url))
+    page = "https://example.org/~ada/?a=1&b=%20#top"
+    assert f"url={page}\n" in _generate(tmp_path, _spec(url=page))["library.properties"]
+
+
+@pytest.mark.parametrize("text", [*HOSTILE, *HIDDEN])
 def test_each_door_gives_one_harmless_line(text: str) -> None:
     """
     Each filter keeps text within its comment, its string or its line.
@@ -165,8 +207,8 @@ def test_each_door_gives_one_harmless_line(text: str) -> None:
     comment = c_comment(text)
     inside = c_string(text)
 
-    assert "\n" not in comment + inside + properties_value(text)
     assert not re.search(r"[\x00-\x1f\x7f]", comment + inside + properties_value(text))
+    assert not TAGS.search(properties_value(text))
     assert not comment.endswith(("\\", "??/"))
     assert re.fullmatch(r'(?:[^"\\]|\\.)*', inside)
     assert "??" not in inside

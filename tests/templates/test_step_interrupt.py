@@ -64,3 +64,24 @@ def test_constant_speed_is_these_instructions() -> None:
             "pop",
         ]  # and reti
     )
+
+
+def test_the_way_out_is_within_reach(tmp_path: Path) -> None:
+    """
+    A conditional branch reaches 63 words, and what it leaps over is longest here.
+
+    Four ports beyond SBI and CBI, state in RAM, and a look at the clock. Words: registers 6, state
+    and next row 8, seven writes of LPM, LDS, one operation and STS 6 each with one operation more
+    where a port is written once, leaving 3, RETI 1.
+    """
+    spec = tmp_path / "spec.yaml"
+    far = PAN.replace("A8, A9, A10, A11", "D6, D14, A8, D49") % ", motion: update-events"
+    motors = TILT % "constant" + "  top: {drive: motor-shield, timer: 3}\n" + far
+    spec.write_text(f"library: L\nboard: mega\nmotors:\n{motors}", encoding="utf-8")
+
+    path = api.plan(spec).motors[-1].hot_path
+
+    texts = [instruction.text for instruction in path.usual]
+    leapt_over = path.usual[texts.index("breq  1f") + 1 :]
+    assert path.boundary[0].label == "1"
+    assert sum(instruction.words for instruction in leapt_over) == 6 + 8 + 7 * 6 + 1 + 3 + 1

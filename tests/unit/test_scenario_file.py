@@ -86,7 +86,7 @@ def test_bits_have_names_and_what_the_library_lacks_is_a_number() -> None:
         ("{call: set_speed, control: [FASTER]}", "FASTER", "has no update events; give it"),
         ("{call: set_speed, control: [FAULT]}", "FAULT", "is no bit of set_speed; write one"),
         ("{call: set_speed, control: [DRVEN]}", "DRVEN", "write 'DRV_EN', "),
-        ("{call: set_speed, control: 256}", "256", "less than or equal to 255"),
+        ("{call: set_speed, control: 256}", "256", "write 255 or less"),
         ("{call: set_speed, count: 3}", "3", "has no update events; give it"),
         ("{call: update_check}", "update_check", "has no update events; give it"),
         ("{call: hold, motor: roll}", "roll", "is no motor of this spec; it has pan, tilt"),
@@ -95,7 +95,7 @@ def test_bits_have_names_and_what_the_library_lacks_is_a_number() -> None:
         ("{call: divide_clock, control: [FAULT]}", "FAULT", "bit of divide_clock; write a number"),
         ("{call: jump}", "jump", "write 'set_speed', "),
         ("{wait_ms: 1, wait_clocks: 2}", "{wait", "write call, wait_ms or wait_clocks"),
-        ("{wait_clocks: -1}", "-1", "greater than or equal to 0"),
+        ("{wait_clocks: -1}", "-1", "write 0 or more"),
     ],
 )
 def test_what_a_motor_lacks_is_refused_with_its_place(

@@ -29,7 +29,7 @@ MISSHAPEN = (
     "timer_is_a_word",
     "list",
     "version_bad",
-    "url_that_is_no_address",
+    "url_of_a_file",
 )
 
 

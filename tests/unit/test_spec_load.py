@@ -263,7 +263,7 @@ def test_a_spec_needs_a_motor(faults: Faulty, motors: str) -> None:
 
 def test_a_file_that_is_not_utf_8_is_refused_at_its_line(spec_path: Path) -> None:
     """
-    Bytes of another encoding are reported with the line that holds them.
+    Bytes of another encoding are reported with the line and column that hold them.
     """
     spec_path.write_bytes(b"library: Mine\n# M\xfcller\n")
 
@@ -271,7 +271,7 @@ def test_a_file_that_is_not_utf_8_is_refused_at_its_line(spec_path: Path) -> Non
         load_spec(spec_path)
 
     assert error.value.faults == (
-        Fault(f"{spec_path}:2:1", "", "is not UTF-8; save the file with that encoding"),
+        Fault(f"{spec_path}:2:4", "", "is not UTF-8; save the file with that encoding"),
     )
 
 
@@ -290,5 +290,5 @@ def test_a_huge_file_and_deep_nesting_are_refused(faults: Faulty) -> None:
     (large,) = faults("#" * 300_000)
     (deep,) = faults("a: " + "[" * 40 + "]" * 40)
 
-    assert large.reason.startswith("is larger than 256 KiB; ")
+    assert large.reason.startswith("is larger than 64 KiB; ")
     assert deep.reason == "is nested too deeply for a spec; remove a level"

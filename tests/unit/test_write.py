@@ -31,12 +31,30 @@ OLD = {"README.md": "old\n", "src/Pan.h": "old header\n", "src/Old.cpp": "old co
 NEW = {"README.md": "new\n", "src/Pan.h": "new header\n", "src/New.cpp": "new code\n"}
 MARKER = "extras/stepgen.json"
 KILLER = Path(__file__).with_name("write_and_die.py")
+FAILER = Path(__file__).with_name("write_and_fail.py")
 WRITER = """
 import json, pathlib, sys
 from stepgen.library.write import write_library
 for _ in range(100):
     write_library(json.loads(sys.argv[2]), pathlib.Path(sys.argv[1]))
 """
+# On a file system of its own, which only this process sees, and which goes away with it.
+FULL_DISK = """
+import json, pathlib, sys
+from stepgen.errors import StepgenError
+from stepgen.library.write import write_library
+old, new, target = json.loads(sys.argv[1]), json.loads(sys.argv[2]), pathlib.Path(sys.argv[3])
+write_library(old, target)
+try:
+    write_library(new, target)
+except StepgenError as error:
+    assert "make room on the disk" in str(error), error
+    new = old
+assert all((target / path).read_text() == text for path, text in new.items())
+assert [path.name for path in target.parent.iterdir()] == ["Pan"]
+print(new == old)
+"""
+MOUNT = 'mount -t tmpfs -o size="$1k" tmpfs "$2" && shift 2 && exec "$@"'
 
 Tree = dict[str, bytes | str]
 
@@ -157,7 +175,17 @@ def test_a_folder_without_the_marker_is_refused(tmp_path: Path, *, force: bool) 
         write_library(OLD, target, force=force)
 
 
-@pytest.mark.parametrize("marker", ["", "[]", '{"generator": "other"}', "\x00", "[" * 100_000])
+@pytest.mark.parametrize(
+    "marker",
+    [
+        "",
+        "[]",
+        '{"generator": "other"}',
+        "\x00",
+        "[" * 100_000,
+        '{"generator": "stepgen"} ' * 50_000,
+    ],
+)
 def test_a_damaged_marker_is_none(tmp_path: Path, marker: str) -> None:
     """
     What merely has the marker's name does not make a folder stepgen's.
@@ -310,13 +338,36 @@ def test_a_full_disk_leaves_the_old_library(target: Path) -> None:
         signal.signal(signal.SIGXFSZ, before)
 
 
+@pytest.mark.campaign
+def test_a_small_disk_leaves_the_old_library(tmp_path: Path) -> None:
+    """
+    On disks from too small to large enough for the new library beside the old, one is whole.
+    """
+    large = {**NEW, "src/Pan.h": "x" * 50_000}
+    mount = ("unshare", "--map-root-user", "--mount", "sh", "-c", MOUNT, "sh")
+    write = (sys.executable, "-c", FULL_DISK, json.dumps(OLD), json.dumps(large))
+    kept_old = []
+    for size_kib in range(32, 144, 8):
+        command = (*mount, str(size_kib), str(tmp_path), *write, str(tmp_path / "Pan"))
+        done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60)
+        assert done.returncode == 0, done.stderr
+        kept_old.append(done.stdout == "True\n")
+
+    assert kept_old == sorted(kept_old, reverse=True)
+    assert kept_old[0]
+    assert not kept_old[-1]
+
+
 @pytest.mark.parametrize("path", ["/etc/x", "../x", "a/../../x", "", MARKER])
 def test_files_stay_inside_the_library(tmp_path: Path, path: str) -> None:
     """
-    A path that leads out of the library, or is the marker's, is a mistake of the caller.
+    A path that leads out of the library or the zip, or is the marker's, is the caller's mistake.
     """
     with pytest.raises(ValueError, match="cannot be a file of a library"):
         write_library({path: "text"}, tmp_path / "Pan")
+    with pytest.raises(ValueError, match="cannot be a file of a library"):
+        zip_library({path: "text"}, "Pan", tmp_path / "Pan.zip")
+    assert names(tmp_path) == []
 
 
 def _die(target: Path, call: int, *options: str) -> bool:
@@ -363,6 +414,70 @@ def test_a_killed_first_run_leaves_no_half_library(tmp_path: Path) -> None:
         assert not target.exists() or texts(target) == NEW
         call += 1
     assert call > len(NEW)
+
+
+@pytest.mark.parametrize("error", ["ENOSPC", "EIO"])
+@pytest.mark.parametrize("options", [(), ("--no-exchange",)])
+def test_a_failing_disk_leaves_a_whole_library(
+    tmp_path: Path, options: tuple[str, ...], error: str
+) -> None:
+    """
+    From any call to the file system on nothing more can be written: one library is whole.
+
+    Without the exchange it may have stepped aside; the next run ends well and mends that.
+    """
+    command = (sys.executable, str(FAILER), str(tmp_path), error, *options)
+    done = subprocess.run(command, check=True, timeout=60, capture_output=True)
+    results = json.loads(done.stdout)
+
+    for result in results:
+        whole = result["target"] or result["aside"][0]
+        assert whole in ((OLD, NEW) if result["refused"] else (NEW,))
+        assert result["target"] is not None or options
+        assert result["left"] == ["Pan"]
+    assert [result["refused"] for result in results].count(True) > len(NEW)
+    assert not results[-1]["refused"]
+    assert any(result["target"] is None for result in results) == bool(options)
+
+
+@pytest.mark.parametrize("exchanges", [True, False])
+def test_a_file_saved_in_the_last_moment_is_not_lost(
+    target: Path, monkeypatch: pytest.MonkeyPatch, *, exchanges: bool
+) -> None:
+    """
+    What comes into the library between the look at it and the swap brings the old one back.
+    """
+    exchange = swap.exchange
+    unsaved = ["mine"]
+
+    def save_and_exchange(one: Path, two: Path) -> bool:
+        if unsaved:
+            (target / "mine.txt").write_text(unsaved.pop())
+        return exchanges and exchange(one, two)
+
+    monkeypatch.setattr(swap, "exchange", save_and_exchange)
+    with pytest.raises(StepgenError, match=r"did not write \(mine.txt\)") as caught:
+        write_library(NEW, target)
+
+    assert caught.value.faults[0].place == str(target)
+    assert texts(target) == {**OLD, "mine.txt": "mine"}
+    assert names(target.parent) == ["Pan"]
+
+
+def test_a_killed_run_s_folder_with_a_saved_file_is_kept(target: Path) -> None:
+    """
+    A kill right after the swap leaves the old library aside; what was saved in it is not lost.
+    """
+    aside = target.parent / ".Pan.stepgen-killed"
+    aside.mkdir()
+    target.rename(aside / "new")
+    write_library(NEW, target)  # it finds no trace of a file that is not its own
+    assert names(target.parent) == ["Pan"]
+
+    write_library(OLD, aside / "new")
+    (aside / "new" / "mine.txt").write_text("mine")
+    with refused(target.parent / ".Pan.stepgen-killed", "a run that was killed", "move them"):
+        write_library(OLD, target)
 
 
 def test_two_runs_at_once_do_not_mix(tmp_path: Path) -> None:

@@ -279,18 +279,6 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
       "   pop   r24                      \n"  // 2
       "   reti                           \n"  // 4
 
-      "3: push  r25                      \n"  // 2
-      "   lds   r24, %[millis]           \n"  // 2  millis(), lower half,
-      "   lds   r25, %[wake]             \n"  // 2  less the moment to wake up at
-      "   sub   r24, r25                 \n"  // 1
-      "   lds   r24, %[millis] + 1       \n"  // 2
-      "   lds   r25, %[wake] + 1         \n"  // 2
-      "   sbc   r24, r25                 \n"  // 1
-      "   pop   r25                      \n"  // 2
-      "   sbrs  r24, 7                   \n"  // 2  negative: not yet
-      "   rjmp  2f                       \n"  //
-      "   rjmp  4b                       \n"  // 2
-
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
       "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
       "   rjmp  2f                       \n"  //    think before the step
@@ -331,6 +319,18 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   jmp   __vector_motor_boundary  \n"  // 3
+
+      "3: push  r25                      \n"  // 2
+      "   lds   r24, %[millis]           \n"  // 2  millis(), lower half,
+      "   lds   r25, %[wake]             \n"  // 2  less the moment to wake up at
+      "   sub   r24, r25                 \n"  // 1
+      "   lds   r24, %[millis] + 1       \n"  // 2
+      "   lds   r25, %[wake] + 1         \n"  // 2
+      "   sbc   r24, r25                 \n"  // 1
+      "   pop   r25                      \n"  // 2
+      "   sbrs  r24, 7                   \n"  // 2  negative: not yet
+      "   rjmp  2b                       \n"  //
+      "   rjmp  4b                       \n"  // 2
       :
       :
         [sreg] "I"(_SFR_IO_ADDR(SREG)),

@@ -1,0 +1,180 @@
+"""
+Hypothesis strategies: specs that are valid but for what motors take from each other, and others.
+
+`specs` draws everything that a spec can say, as plain data. `nearly_valid_specs` breaks one or two
+things of such a spec; `mutated_bytes` changes bytes of its file.
+"""
+
+from copy import deepcopy
+from io import BytesIO
+from typing import Any
+
+from hypothesis import strategies as st
+from ruamel.yaml import YAML
+
+from stepgen.devices import boards
+from stepgen.spec.yaml_guard import HIDDEN
+
+Data = dict[str, Any]
+
+# What reads as code somewhere, among names and texts that a spec may have.
+KEYWORDS = ("auto", "class", "new", "operator", "void", "int", "volatile", "asm", "near", "f", "pi")
+CODE = ("*/ int evil();", "\\", "??/", "{{ library.name }}", "%% for x in y", '"); evil("', "%s%n")
+ODD: tuple[object, ...] = (
+    None,
+    True,
+    False,
+    0,
+    -1,
+    2**63,
+    1.5,
+    float("nan"),
+    float("inf"),
+    "",
+    " ",
+    "on",
+    "012",
+    [],
+    {},
+)
+
+# PWM A, brakes B and A, PWM B, DIR A and B of the Arduino Motor Shield R3.
+SHIELD_PINS = ("D3", "D8", "D9", "D11", "D12", "D13")
+
+library_names = st.from_regex(r"X[A-Za-z0-9_]{0,62}", fullmatch=True)
+motor_names = st.sampled_from(KEYWORDS) | st.from_regex(r"[a-z][A-Za-z0-9]{0,30}", fullmatch=True)
+lines = st.sampled_from(CODE) | st.text(
+    st.characters(exclude_categories=("C", "Zl", "Zp")), max_size=80
+).filter(lambda text: not HIDDEN.search(text))
+patterns = st.text("01", min_size=4, max_size=4)
+
+
+def to_yaml(data: object) -> bytes:
+    """
+    Return *data* as the file of a spec.
+    """
+    stream = BytesIO()
+    yaml = YAML(typ="safe")
+    yaml.representer.ignore_aliases = lambda _: True  # a spec has no anchors
+    yaml.dump(data, stream)
+    return stream.getvalue()
+
+
+@st.composite
+def specs(draw: st.DrawFn) -> Data:
+    """
+    Draw a spec for any board: one to three motors, with pins of their own.
+    """
+    board = draw(st.sampled_from(boards()))
+    # Serial, which the bench uses, keeps its pins.
+    free = [pin.label for pin in board.pins if not {"Serial RX", "Serial TX"} & set(pin.uses)]
+    most = min(3, len(board.mcu.timers) - 1)
+    names = draw(st.lists(motor_names, min_size=1, max_size=most, unique_by=str.lower))
+    compared = draw(st.sampled_from([*names, None]))
+    shield = draw(st.sampled_from([*names, None]))
+    if shield:
+        free = [pin for pin in free if pin not in SHIELD_PINS]
+    motors = {
+        name: draw(motor(free if name != shield else [], timed=name != compared)) for name in names
+    }
+    return {"library": draw(library()), "board": board.name, "motors": motors}
+
+
+@st.composite
+def library(draw: st.DrawFn) -> Data | str:
+    """
+    Draw a library's name, or all that it may say of itself.
+    """
+    name = draw(library_names)
+    if draw(st.booleans()):
+        return name
+    texts = dict.fromkeys(("author", "maintainer", "sentence", "paragraph"), lines)
+    version = st.tuples(*[st.integers(0, 99_999)] * 3).map(lambda parts: "{}.{}.{}".format(*parts))
+    return {"name": name, **draw(st.fixed_dictionaries({}, optional={**texts, "version": version}))}
+
+
+@st.composite
+def motor(draw: st.DrawFn, free: list[str], *, timed: bool) -> Data:
+    """
+    Draw a motor on pins of *free*, which it takes away, or on the shield where none is free.
+
+    It is on timer 2 unless it is *timed*, on one of 16 bits.
+    """
+    named = st.sampled_from(["full", "wave", "half"])
+    if free:
+        pins = draw(st.lists(st.sampled_from(free), min_size=4, max_size=4, unique=True))
+        free[:] = [pin for pin in free if pin not in pins]
+        tables = st.lists(patterns, min_size=3, max_size=32).filter(_steps)
+        drive = {"kind": "four-wire", "pins": pins, "sequence": draw(named | tables)}
+    else:
+        drive = {"kind": "motor-shield", "sequence": draw(named)}
+    gear = st.integers(1, 500) | st.sampled_from([63.68395, "25792/405", "1/3"])
+    turn = st.fixed_dictionaries({"full_steps": st.integers(1, 2000), "gear": gear})
+    options = {
+        "at_rest": st.sampled_from(["hold", "release"]),
+        "port": st.sampled_from(["owned", "shared"]),
+        "motion": st.sampled_from(["constant", "update-events"])
+        | st.just({"kind": "update-events", "debug": True}),
+        "steps_per_turn": st.integers(1, 1_000_000) | turn,
+    }
+    return {
+        "drive": drive,
+        "timing": "fast-pwm" if timed else "compare",
+        **draw(st.fixed_dictionaries({}, optional=options)),
+    }
+
+
+def _steps(table: list[str]) -> bool:
+    return all(one != two for one, two in zip(table, [*table[1:], table[0]], strict=True))
+
+
+def _places(data: object) -> list[tuple[Any, Any]]:
+    """
+    Return each (mapping or list, key or index) of *data*, however deep.
+    """
+    items = data.items() if isinstance(data, dict) else enumerate(data)  # type: ignore[arg-type]
+    found = []
+    for key, value in items:
+        found.append((data, key))
+        found += _places(value) if isinstance(value, dict | list) else []
+    return found
+
+
+@st.composite
+def nearly_valid_specs(draw: st.DrawFn) -> Data:
+    """
+    Draw a spec in which one or two things are missing, odd, twice there or elsewhere.
+    """
+    data = deepcopy(draw(specs()))
+    for _ in range(draw(st.integers(1, 2))):
+        place, key = draw(st.sampled_from(_places(data) or [(data, "library")]))
+        other, source = draw(st.sampled_from(_places(data) or [(data, "library")]))
+        change = draw(st.sampled_from(["drop", "odd", "copy", "add"]))
+        if change == "drop":
+            del place[key]
+        elif change == "odd":
+            place[key] = draw(st.sampled_from(ODD) | lines)
+        elif change == "copy":
+            place[key] = deepcopy(other[source])
+        elif isinstance(place, dict):
+            place[draw(lines)] = draw(st.sampled_from(ODD) | lines)
+        else:
+            place.append(draw(st.sampled_from(ODD) | lines))
+    return data
+
+
+@st.composite
+def mutated_bytes(draw: st.DrawFn) -> bytes:
+    """
+    Draw a spec's file with a few stretches cut out, doubled or written over.
+    """
+    content = to_yaml(draw(specs()))
+    for _ in range(draw(st.integers(1, 4))):
+        begin = draw(st.integers(0, len(content)))
+        end = min(len(content), begin + draw(st.integers(0, 20)))
+        middle = draw(st.binary(max_size=8) | st.just(content[begin:end] * 2))
+        content = content[:begin] + middle + content[end:]
+    return content
+
+
+__all__ = ["mutated_bytes", "nearly_valid_specs", "specs", "to_yaml"]
