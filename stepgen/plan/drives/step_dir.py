@@ -67,7 +67,9 @@ def _driver(spec: StepDir, faults: Faults) -> StepDriver | None:
         return None
     if spec.microsteps not in driver.microsteps:
         known = ", ".join(str(number) for number in driver.microsteps)
-        faults.at("microsteps").report(f"the {driver.title} has no such setting; write one of {known}")
+        faults.at("microsteps").report(
+            f"the {driver.title} has no such setting; write one of {known}"
+        )
         return None
     return driver
 
