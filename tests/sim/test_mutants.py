@@ -176,8 +176,8 @@ MUTANTS = (
     Mutant(
         "coils that go off with the last step",
         "motions/constant.j2",
-        "{{ motor.name }}Reached(kThink | kCoast);",
-        "{{ motor.name }}Reached(kThink | kCoast); {{ motor.name }}CoilsOff();",
+        "{{ motor.name }}Reached((mode & kReverse) | kThink | kCoast);",
+        "{{ motor.name }}CoilsOff(); {{ motor.name }}Reached((mode & kReverse) | kThink | kCoast);",
         spec="uno_uln2003_28byj48",
         check="single steps both ways",
         finding="pattern 0000 at cycle",
