@@ -6,6 +6,7 @@ strict); LK and LJ are stepgen's own.
 """
 
 import os
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 

@@ -2,12 +2,14 @@
 Which examples a library has: those that suit its motors, its board and what the spec names.
 """
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from stepgen import api
+from stepgen.devices import SKETCH_LIBRARIES
 
 Generate = Callable[[str], dict[str, str]]
 
@@ -107,6 +109,17 @@ def test_together_is_there_if_uses_names_something_to_show(
     Nothing can be shown of millis, which every sketch uses.
     """
     assert ("Together" in names(generate(spec(f"drive: {COILS}", uses=uses)))) == there
+
+
+@pytest.mark.parametrize("name", sorted(set(SKETCH_LIBRARIES) - {"millis"}))
+def test_each_library_that_uses_can_name_is_in_together(generate: Generate, name: str) -> None:
+    """
+    There is a partial for each, which does something with it.
+    """
+    motor = "drive: {kind: four-wire, pins: [A0, A1, A2, A3]}, timer: 4"
+    sketch = generate(spec(motor, board="mega", uses=name))["examples/Together/Together.ino"]
+
+    assert re.search(rf"\b{name}\b.*;|<{name}.h>", sketch)
 
 
 @pytest.mark.parametrize(
