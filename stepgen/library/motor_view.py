@@ -5,6 +5,7 @@ The view of one motor: names, masks and numbers as finished text.
 from dataclasses import dataclass
 
 from stepgen.library.api_view import dump_name, tells_missed
+from stepgen.library.examples_view import example_speed_sps
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
 from stepgen.library.kernel_view import KernelView, kernel_view
 from stepgen.library.lengths import Lengths, lengths
@@ -23,7 +24,6 @@ from stepgen.library.timings import TimerView, timer_view
 from stepgen.plan.model import MotorPlan, Plan
 
 _LARGEST_UINT16, _LARGEST_UINT32 = 0xFFFF, 0xFFFF_FFFF
-_EXAMPLE_SPEED_SPS = 200  # slow enough for any motor, a 28BYJ-48 included
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         wires=tuple(
             Named(wire.signal, wire.pin.label, wire.pin.bit.name) for wire in drive.every_wire
         ),
-        example_speed_sps=_EXAMPLE_SPEED_SPS,
+        example_speed_sps=example_speed_sps(plan),
         turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",
         turn_text="turn" if motor.steps_per_turn else "way of 200 steps",
     )

@@ -52,13 +52,27 @@ def held_rows(plan: Plan) -> Iterator[HeldRow]:
     """
     for held in plan.held_off:
         microseconds = _microseconds(held, plan)
-        frame = next((b for b in _BAUD_RATES if _FRAME_BITS * 1e6 / b <= microseconds), None)
+        frame = _lowest_baud(held, plan)
         yield HeldRow(
             f"{held.steps_per_second:.0f}",
             f"{int(microseconds)} us",
             str(int(microseconds // _PIXEL_US)),
             f"{frame}" if frame else "none",
         )
+
+
+def lowest_baud(plan: Plan, steps_per_second: int, at_least: int) -> int | None:
+    """
+    Return the lowest usual baud at which SoftwareSerial loses no step at that rate, or None.
+    """
+    held = next((h for h in plan.held_off if h.steps_per_second >= steps_per_second), None)
+    baud = _lowest_baud(held, plan) if held else None
+    return max(baud, at_least) if baud else None
+
+
+def _lowest_baud(held: HeldOff, plan: Plan) -> int | None:
+    microseconds = _microseconds(held, plan)
+    return next((b for b in _BAUD_RATES if _FRAME_BITS * 1e6 / b <= microseconds), None)
 
 
 def lateness(plan: Plan) -> str:

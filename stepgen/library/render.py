@@ -25,7 +25,6 @@ _FILES = {
     "keywords.txt": "keywords.txt.j2",
     "README.md": "README.md.j2",
     "LICENSE": "LICENSE.j2",
-    "examples/Turn/Turn.ino": "examples/Turn.ino.j2",
 }
 
 
@@ -96,9 +95,12 @@ def render_library(plan: Plan, spec_text: str, templates: Path | None = None) ->
     made = environment(templates)
     view = make_view(plan, spec_hash(spec_text))
     context = {"library": view, **_partials(made, view)}
+    templates_by_path = {path.format(name=view.name): file for path, file in _FILES.items()}
+    for example in view.examples.sketches:
+        templates_by_path[example.path] = f"examples/{example.template}.ino.j2"
     rendered = {
-        path.format(name=view.name): tidy(made.get_template(template).render(context))
-        for path, template in _FILES.items()
+        path: tidy(made.get_template(file).render(context))
+        for path, file in templates_by_path.items()
     }
     rendered["extras/spec.yaml"] = spec_text
     return dict(sorted(rendered.items()))
@@ -117,4 +119,5 @@ def _partials(made: Environment, view: LibraryView) -> dict[str, object]:
         "kernels": modules("kernels", {motor.kernel_name for motor in view.motors}),
         "timings": modules("timings", timings),
         "motions": modules("motions", {motor.motion_name for motor in view.motors}),
+        "others": modules("others", {other.partial for other in view.examples.neighbours}),
     }

@@ -13,6 +13,7 @@ from stepgen.library.api_view import (
     function_names,
     status_bits,
 )
+from stepgen.library.examples_view import ExamplesView, examples_view
 from stepgen.library.hot_view import THINK_BIT
 from stepgen.library.motor_view import MotorView, Named, motor_view
 from stepgen.library.prose import paragraph, takes, title
@@ -71,6 +72,7 @@ class LibraryView:
     timing_names: tuple[str, ...]
     needs_comment: tuple[str, ...]
     motors: tuple[MotorView, ...]
+    examples: ExamplesView
     keywords: tuple[Named, ...]
     names: str
     takes: tuple[str, ...]
@@ -118,6 +120,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         timing_names=tuple(sorted({motor.timer.shared_by for motor in motors})),
         needs_comment=needs_comment(plan),
         motors=motors,
+        examples=examples_view(plan),
         keywords=_keywords(plan),
         names=names,
         takes=takes(plan),

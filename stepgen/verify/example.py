@@ -56,7 +56,8 @@ def _calls(trace: Trace, subject: Subject, index: int, plan: Plan) -> list[Answe
     """
     motor = plan.motors[index]
     steps = round(motor.steps_per_turn) if motor.steps_per_turn else _DEFAULT_STEPS
-    top = plan.board.f_cpu_hz // _SPEED_SPS
+    fastest_sps = plan.board.f_cpu_hz // plan.minimum_period_cycles
+    top = plan.board.f_cpu_hz // min(_SPEED_SPS, fastest_sps)
     answers: list[Answer] = []
     for start in trace.clock_starts(subject.timer):
         section = trace.masked_section(start.cycle)

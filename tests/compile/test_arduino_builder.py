@@ -43,3 +43,31 @@ def test_the_example_built_by_the_ide_steps_as_the_model_says(
 
     assert built.warnings == ()
     assert run_example(api.load(path), plan, built.elf) == ()
+
+
+@pytest.mark.parametrize(
+    ("stem", "name"),
+    [
+        ("uno_uln2003_28byj48", "WiringTest"),
+        ("uno_variable_speed", "Console"),
+        ("mega_stacked_shields_variable", "Console"),
+    ],
+)
+def test_the_ide_builds_the_examples_that_have_functions(
+    stem: str, name: str, tmp_path: Path
+) -> None:
+    """
+    The IDE puts prototypes before the first function: they must not come before the types.
+    """
+    path = SPECS / f"{stem}.yaml"
+    (written,) = api.write(path, tmp_path / "libraries")
+
+    built = build_with_ide(
+        written.target / "examples" / name,
+        tmp_path / "libraries",
+        api.plan(path).board.fqbn,
+        find_compilers()[0],
+        tmp_path / "build",
+    )
+
+    assert built.warnings == ()

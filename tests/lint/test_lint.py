@@ -6,6 +6,7 @@ strict); LK and LJ are stepgen's own.
 """
 
 import os
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -197,7 +198,7 @@ BROKEN: list[tuple[str, Break]] = [
     ("LD001", drop("README.md")),
     ("LD002", drop("LICENSE")),
     ("LD003", write("Turn/Turn.ino")),
-    ("LD004", drop("examples/Turn/Turn.ino")),
+    ("LD004", lambda folder: shutil.rmtree(folder / "examples")),
     ("LD005", write("demo/readme.txt")),
     ("LD006", move("examples", "Examples")),
     ("LJ001", write("library.json", "{")),

@@ -12,7 +12,7 @@ from jinja2 import UndefinedError, nodes
 from stepgen.library.render import environment, template_dir
 
 TEMPLATES = sorted(path for path in template_dir().rglob("*.j2"))
-PARTIALS = ("kernels", "timings", "motions")
+PARTIALS = ("kernels", "timings", "motions", "others")
 MOST_IFS_PER_100_LINES = 6
 ARITHMETIC = (
     nodes.Add,
@@ -84,7 +84,7 @@ def test_control_lines_begin_with_percent_signs(path: Path) -> None:
 @pytest.mark.parametrize("folder", PARTIALS)
 def test_all_partials_of_a_choice_offer_the_same_macros(folder: str) -> None:
     """
-    No caller has to ask which kernel, timing or motion it has.
+    No caller has to ask which kernel, timing, motion or other library it has.
     """
     offers: dict[tuple[tuple[str, tuple[str, ...]], ...], list[str]] = defaultdict(list)
     for path in sorted((template_dir() / folder).glob("*.j2")):
