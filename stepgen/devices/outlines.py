@@ -162,7 +162,8 @@ MEGA = Outline(
         Header("A0 A1 A2 A3 A4 A5 A6 A7", 2000, 2000, "down"),
         Header("A8 A9 A10 A11 A12 A13 A14 A15", 2900, 2000, "down"),
         Header(
-            "5V D22 D24 D26 D28 D30 D32 D34 D36 D38 D40 D42 D44 D46 D48 D50 D52 GND",
+            # A GND follows, whose name A15 leaves no room for.
+            "5V D22 D24 D26 D28 D30 D32 D34 D36 D38 D40 D42 D44 D46 D48 D50 D52",
             3700,
             100,
             "right",

@@ -31,6 +31,16 @@ LOOKED_AT = (
 )
 PRINTED = (*LOOKED_AT, "uno_two_motors", "uno_servo_beside_variable", "mega1280_two_motors")
 
+CROWDED = """\
+library: Crowded
+board: mega
+motors:
+  aMotorWithTheLongestNameOfAll31: {drive: {kind: four-wire, pins: [D22, D23, D24, D25]}, timer: 1}
+  second: {drive: {kind: four-wire, pins: [D50, D51, A0, A15]}, timer: 3}
+  third: {drive: motor-shield, timer: 4}
+  fourth: {drive: {kind: four-wire, pins: [D0, D21, D38, D39]}, timer: 5, motion: update-events}
+"""
+
 
 def chromium(folder: Path, text: str, *options: str) -> str:
     """
@@ -83,6 +93,19 @@ def test_everything_can_be_read(tmp_path: Path, name: str, scheme: str) -> None:
     assert found["dark"] == (scheme == "dark")
     assert found["texts"] > 150
     assert found["lines"] > 5
+    assert found["faint"] == []
+    assert found["outside"] == []
+    assert found["overlapping"] == []
+
+
+def test_a_crowded_picture_can_be_read(tmp_path: Path) -> None:
+    """
+    Four motors with long names on one Mega, with wires from every side and both inner rows.
+    """
+    path = tmp_path / "crowded.yaml"
+    path.write_text(CROWDED, encoding="utf-8")
+    found = looked_at(tmp_path, page(path), "--window-size=1100,5000")
+
     assert found["faint"] == []
     assert found["outside"] == []
     assert found["overlapping"] == []

@@ -14,7 +14,7 @@ from stepgen import api
 from stepgen.datasheet.page import PATH, render_datasheet
 from stepgen.datasheet.wiring import wiring_scene
 from stepgen.devices import Board, boards
-from stepgen.devices.outlines import OUTLINES, outline_of
+from stepgen.devices.outlines import OUTLINES, Outline, outline_of
 from tests.datasheet.pages import SPECS, Reader, page, report_of, spec, words
 
 MOST_BYTES = 50_000
@@ -97,15 +97,13 @@ def test_every_board_can_be_drawn(board: Board) -> None:
 
 
 @pytest.mark.parametrize("outline", OUTLINES, ids=lambda outline: outline.boards[0])
-def test_pins_lie_on_the_board(outline: object) -> None:
+def test_pins_lie_on_the_board(outline: Outline) -> None:
     """
     No pin is beside the board, and none on another.
     """
-    assert outline in OUTLINES
-    known = next(one for one in OUTLINES if one is outline)
-    places = [(place.x, place.y) for place in known.places()]
+    places = [(place.x, place.y) for place in outline.places()]
 
-    assert all(0 < x < known.width and 0 < y < known.height for x, y in places)
+    assert all(0 < x < outline.width and 0 < y < outline.height for x, y in places)
     assert len(set(places)) == len(places)
 
 
