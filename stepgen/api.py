@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from stepgen.datasheet.page import PATH as DATASHEET
 from stepgen.datasheet.page import render_datasheet
-from stepgen.datasheet.report import Report
 from stepgen.draft import Draft
 from stepgen.errors import Fault, StepgenError
 from stepgen.library.render import render_library
@@ -267,6 +266,8 @@ def datasheet(path: Path, *, report: "SpecReport | None" = None) -> str:
     Raises:
         StepgenError: All faults and conflicts of the spec.
     """
+    from stepgen.datasheet.report import Report  # noqa: PLC0415 - generating has no report
+
     loaded = load_spec(path)
     found = None if report is None else Report.model_validate(report.as_json())
     return render_datasheet(make_plan(loaded), loaded.document.text, found)

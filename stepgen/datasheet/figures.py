@@ -5,12 +5,15 @@ The tables of the datasheet: the plan's numbers and a verification's as finished
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-from stepgen.datasheet.report import MotorFigures, Report
 from stepgen.plan.model import MotorPlan, Plan, RateLimit
 from stepgen.plan.rates import Clock
 from stepgen.plan.timings import plan_setting
 from stepgen.units import deviation_ppm
+
+if TYPE_CHECKING:
+    from stepgen.datasheet.report import MotorFigures, Report
 
 NOT_VERIFIED = "not verified"
 _RATES_SPS = (1, 10, 30, 100, 200, 300, 500, 1_000, 2_000, 3_000, 5_000, 10_000, 20_000)
@@ -132,7 +135,7 @@ def _both(cycles: int, plan: Plan) -> Row:
     return (f"{cycles}", f"{cycles * 1e6 / plan.board.f_cpu_hz:.1f}")
 
 
-def interrupt_table(plan: Plan, report: Report | None) -> Table:
+def interrupt_table(plan: Plan, report: "Report | None") -> Table:
     """
     Return the cycles of each step interrupt: as planned, as the program bounds, as measured.
     """
@@ -141,7 +144,7 @@ def interrupt_table(plan: Plan, report: Report | None) -> Table:
     def planned(name: str, value: Callable[[MotorPlan], object]) -> Row:
         return (name, *(str(value(motor)) for motor in motors))
 
-    def measured(name: str, value: Callable[[MotorFigures], object]) -> Row:
+    def measured(name: str, value: "Callable[[MotorFigures], object]") -> Row:
         if report is None:
             return (name, *(NOT_VERIFIED for _ in motors))
         return (name, *(str(value(report.motors[motor.name])) for motor in motors))
@@ -175,12 +178,12 @@ def _laps(motor: MotorPlan) -> str:
     return f"{motor.hot_path.lap_cycles[0]}" if motor.hot_path.lap_cycles else "none"
 
 
-def _mean(figures: MotorFigures) -> str:
+def _mean(figures: "MotorFigures") -> str:
     # Without the long run, which slow simulators leave out, there is no mean.
     return f"{figures.cycles_per_step:g}" if figures.cycles_per_step else "not measured"
 
 
-def memory_table(plan: Plan, report: Report | None) -> Table:
+def memory_table(plan: Plan, report: "Report | None") -> Table:
     """
     Return flash, RAM and stack that the library takes over an empty sketch.
     """
@@ -194,7 +197,7 @@ def memory_table(plan: Plan, report: Report | None) -> Table:
     return Table("Memory, over an empty sketch", ("", "takes"), rows)
 
 
-def outcome(report: Report | None) -> str:
+def outcome(report: "Report | None") -> str:
     """
     Return what came out of the verification, in a few words.
     """

@@ -3,12 +3,12 @@ The page: everything that its template prints, and the page as text.
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from stepgen import __version__
 from stepgen.datasheet import figures
 from stepgen.datasheet.chart import Chart, motion_chart
 from stepgen.datasheet.figures import Table
-from stepgen.datasheet.report import Check, Report
 from stepgen.datasheet.scene import Scene
 from stepgen.datasheet.wiring import wiring_scene
 from stepgen.library.prose import sequence_text, takes
@@ -18,6 +18,9 @@ from stepgen.library.text import frequency, tidy
 from stepgen.library.view import make_view
 from stepgen.plan.model import Plan
 from stepgen.plan.warnings import plan_warnings
+
+if TYPE_CHECKING:
+    from stepgen.datasheet.report import Check, Report
 
 PATH = "extras/datasheet.html"
 
@@ -65,10 +68,10 @@ class PageView:
     held: Table
     lateness: str
     passed: str
-    failed: tuple[Check, ...]
+    failed: "tuple[Check, ...]"
 
 
-def render_datasheet(plan: Plan, spec_text: str, report: Report | None = None) -> str:
+def render_datasheet(plan: Plan, spec_text: str, report: "Report | None" = None) -> str:
     """
     Return the page about the library of *plan*; *report* tells what a verification found.
 
@@ -79,7 +82,7 @@ def render_datasheet(plan: Plan, spec_text: str, report: Report | None = None) -
     return tidy(made.get_template("datasheet/page.html.j2").render(page=view))
 
 
-def page_view(plan: Plan, spec_text: str, report: Report | None) -> PageView:
+def page_view(plan: Plan, spec_text: str, report: "Report | None") -> PageView:
     """
     Return everything that the template prints about *plan* and *report*.
     """
