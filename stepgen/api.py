@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stepgen.datasheet.page import PATH as DATASHEET
+from stepgen.datasheet.page import render_datasheet
 from stepgen.draft import Draft
 from stepgen.errors import Fault, StepgenError
 from stepgen.library.render import render_library
@@ -253,6 +255,24 @@ def verify(
     return verify_spec(load_spec(path), chosen, simulator=simulator_named(simulator), track=track)
 
 
+def datasheet(path: Path, *, report: "SpecReport | None" = None) -> str:
+    """
+    Return the page about the library of the spec in *path*, as HTML.
+
+    Args:
+        path: The spec.
+        report: What `verify` found for it; without it the page says that nothing is verified yet.
+
+    Raises:
+        StepgenError: All faults and conflicts of the spec.
+    """
+    from stepgen.datasheet.report import Report  # noqa: PLC0415 - generating has no report
+
+    loaded = load_spec(path)
+    found = None if report is None else Report.model_validate(report.as_json())
+    return render_datasheet(make_plan(loaded), loaded.document.text, found)
+
+
 def tolerances() -> dict[str, int]:
     """
     Return the simulators that are here -> how many cycles from the model's an edge may be there.
@@ -317,7 +337,9 @@ def _several(paths: Path | Sequence[Path]) -> Sequence[Path]:
 def _generate(path: Path) -> Generated:
     loaded = load_spec(path)
     decided = make_plan(loaded)
-    return Generated(loaded, decided, render_library(decided, loaded.document.text))
+    text = loaded.document.text
+    files = {**render_library(decided, text), DATASHEET: render_datasheet(decided, text)}
+    return Generated(loaded, decided, dict(sorted(files.items())))
 
 
 def _shared_names(made: Sequence[Generated]) -> Iterable[Fault]:

@@ -18,6 +18,7 @@ from stepgen import __version__
 from stepgen.commands import (
     boards,
     check,
+    datasheet,
     doctor,
     generate,
     init,
@@ -105,6 +106,7 @@ app.command("init", epilog=init.EXAMPLE)(init.init)
 app.command("check", epilog=check.EXAMPLE)(check.check)
 app.command("plan", epilog=plan.EXAMPLE)(plan.plan)
 app.command("generate", epilog=generate.EXAMPLE)(generate.generate)
+app.command("datasheet", epilog=datasheet.EXAMPLE)(datasheet.datasheet)
 app.command("lint", epilog=lint.EXAMPLE)(lint.lint)
 app.command("schema", epilog=schema.EXAMPLE)(schema.schema)
 app.command("simulate", epilog=simulate.EXAMPLE)(simulate.simulate)

@@ -4,9 +4,9 @@ Speed against time: as an SVG picture, and as text for the terminal.
 
 from bisect import bisect_right
 from fractions import Fraction
-from math import floor, log10
 from xml.etree import ElementTree as ET
 
+from stepgen.datasheet.chart import ticks
 from stepgen.plan.speed_changes import SpeedChange
 from stepgen.units import MILLISECONDS_PER_SECOND
 
@@ -115,15 +115,6 @@ def _line(
 
 def _write(root: ET.Element, text: str, x: float, y: float, kind: str = "start") -> None:
     ET.SubElement(root, "text", {"class": kind}, **_point(x, y)).text = text
-
-
-def ticks(largest: float) -> list[float]:
-    """
-    Return 0 and its multiples of 1, 2 or 5 times a power of ten up to *largest*: 4 to 11 of them.
-    """
-    power = 10 ** floor(log10(largest / 4))
-    step = max(power * factor for factor in (1, 2, 5) if power * factor <= largest / 4)
-    return [count * step for count in range(int(largest / step) + 1)]
 
 
 def text_plot(change: SpeedChange, columns: int = 60, rows: int = 12, *, ascii_only: bool) -> str:

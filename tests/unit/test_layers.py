@@ -10,7 +10,7 @@ import pytest
 PACKAGE = Path(__file__).resolve().parents[2] / "stepgen"
 FACTS = {"errors", "units"}
 BELOW_API = FACTS | {"spec", "devices", "plan", "library", "reference", "verify"}
-BELOW_API |= {"draft", "lint", "schema"}
+BELOW_API |= {"datasheet", "draft", "lint", "schema"}
 # Layer -> the layers it may import. What is not listed here is no layer, and a test says so.
 MAY_IMPORT = {
     "errors": set[str](),
@@ -20,18 +20,31 @@ MAY_IMPORT = {
     "plan": FACTS | {"spec", "devices"},
     "reference": FACTS | {"spec", "devices"},
     "library": FACTS | {"spec", "devices", "plan"},
+    "datasheet": FACTS | {"spec", "devices", "plan", "library"},
     "schema": {"spec", "devices"},
     "draft": FACTS | {"spec", "devices", "plan"},
     "lint": FACTS,
     "verify": FACTS | {"spec", "devices", "plan", "reference", "library"},
     "api": FACTS
-    | {"spec", "devices", "plan", "library", "draft", "lint", "schema", "verify", "reference"},
+    | {
+        "spec",
+        "devices",
+        "plan",
+        "library",
+        "datasheet",
+        "draft",
+        "lint",
+        "schema",
+        "verify",
+        "reference",
+    },
     "commands": FACTS
     | {
         "spec",
         "devices",
         "plan",
         "library",
+        "datasheet",
         "draft",
         "lint",
         "schema",

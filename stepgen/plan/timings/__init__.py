@@ -8,7 +8,7 @@ from typing import Any
 from stepgen.devices import Board, Mcu
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Gate, Storage
-from stepgen.plan.model import Cadence, TimerPlan
+from stepgen.plan.model import Cadence, Setting, TimerPlan
 from stepgen.spec.base import KindModel
 
 
@@ -46,6 +46,14 @@ def plan_cadence(timing: TimerPlan, period_cycles: int) -> Cadence:
     """
     cadence: Cadence = _module(timing.kind).cadence(period_cycles)
     return cadence
+
+
+def plan_setting(timing: TimerPlan, period_cycles: int) -> Setting:
+    """
+    Return what *timing* makes of *period_cycles* between two steps: its prescaler and its ticks.
+    """
+    setting: Setting = _module(timing.kind).choose_setting(period_cycles)
+    return setting
 
 
 def _module(kind: str) -> Any:  # noqa: ANN401 - a module; each offers the functions above

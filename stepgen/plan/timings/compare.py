@@ -21,10 +21,10 @@ Mode and Output Compare Unit.
 from stepgen.devices import Board
 from stepgen.plan.compare_gate import gate
 from stepgen.plan.faults import Faults
-from stepgen.plan.model import Cadence, TimerPlan
+from stepgen.plan.model import Cadence, Setting, TimerPlan
 from stepgen.spec.timings.compare import Compare
 
-__all__ = ["cadence", "gate", "offer", "plan", "way_out"]
+__all__ = ["cadence", "choose_setting", "gate", "offer", "plan", "way_out"]
 
 PRESCALER = 8
 LAP_CYCLES = 256 * PRESCALER
@@ -100,3 +100,10 @@ def cadence(_period_cycles: int) -> Cadence:
     tick before the timer is there. Each counts as a step, though a lap's interrupt is short.
     """
     return Cadence(NEAREST_MATCH_CYCLES, LONGEST_WAIT_CYCLES)
+
+
+def choose_setting(period_cycles: int) -> Setting:
+    """
+    Return the ticks of *period_cycles*, cut off to whole ones; they may be many laps of the timer.
+    """
+    return Setting(PRESCALER, period_cycles // PRESCALER - 1)

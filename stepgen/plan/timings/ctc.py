@@ -14,10 +14,10 @@ from stepgen.devices import Board, Timer16
 from stepgen.plan.faults import Faults
 from stepgen.plan.model import TimerPlan
 from stepgen.plan.timings import fast_pwm
-from stepgen.plan.timings.fast_pwm import cadence, gate, way_out
+from stepgen.plan.timings.fast_pwm import cadence, choose_setting, gate, way_out
 from stepgen.spec.timings.ctc import Ctc
 
-__all__ = ["cadence", "gate", "plan", "way_out"]
+__all__ = ["cadence", "choose_setting", "gate", "plan", "way_out"]
 
 
 def plan(spec: Ctc, board: Board, free: tuple[int, ...], faults: Faults) -> TimerPlan | None:

@@ -1,0 +1,160 @@
+"""
+Speed against time: what a motor's motion does, drawn from the planner's own numbers.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import floor, log10
+
+from stepgen.datasheet.scene import Scene, at
+from stepgen.errors import StepgenError
+from stepgen.plan.model import MotorPlan, Plan
+from stepgen.plan.rates import Clock
+from stepgen.plan.speed_wishes import Wish, plan_wish
+from stepgen.units import MILLISECONDS_PER_SECOND
+
+_WIDTH, _HEIGHT = 400, 168
+_LEFT, _RIGHT, _TOP, _BOTTOM = 48, 14, 18, 34
+_EXAMPLE_SPS = 200  # the speed of the example sketch
+_STEPS_OF_AN_EXAMPLE = 200
+_START_FRACTION = 20
+_RAMP_PERIODS = 40
+_LEAST_RAMP_MS = 1000
+
+Corner = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Curve:
+    """
+    A speed over time as a staircase of (s, steps/s), and the call that makes it.
+    """
+
+    name: str
+    corners: tuple[Corner, ...]
+    call: str
+
+
+@dataclass(frozen=True)
+class Chart:
+    """
+    A drawing with its curves, and what is to be known of it.
+    """
+
+    scene: Scene
+    curves: tuple[Curve, ...]
+    note: str
+
+
+def motion_chart(motor: MotorPlan, plan: Plan) -> Chart:
+    """
+    Return speed against time of *motor*: its ramps, or one turn to and fro where it has none.
+    """
+    curves = _ramps(motor, plan) if motor.motion.watches_clock else ()
+    note = (
+        "From slow to the highest rate by update events: equal changes of the interval, or halved "
+        "ones. stepgen plan works out others."
+    )
+    if not curves:
+        curves = (_there_and_back(motor),)
+        note = (
+            "No ramp: the first step comes one interval after the call, at full rate, and the last "
+            "one ends the move; take rates at which motor and load can start and stop."
+        )
+    title = f"Speed of {motor.name} against time"
+    return Chart(_draw(title, curves), curves, note)
+
+
+def _ramps(motor: MotorPlan, plan: Plan) -> tuple[Curve, ...]:
+    """
+    Return the way up to the highest rate with equal and with halved changes; none if it is slow.
+    """
+    clock = Clock(plan.board.f_cpu_hz)
+    end = plan.minimum_period_cycles
+    start = min(end * _START_FRACTION, plan.largest_period_cycles)
+    start_ms = Fraction(start * MILLISECONDS_PER_SECOND, plan.board.f_cpu_hz)
+    length_ms = max(Fraction(_LEAST_RAMP_MS), start_ms * _RAMP_PERIODS)
+    curves = []
+    for name, halving in (("equal changes", False), ("halved changes", True)):
+        wish = Wish(start, end, halving=halving, duration_ms=Fraction(round(length_ms)))
+        try:
+            change = plan_wish(wish, clock)
+        except StepgenError:  # a motor so slow that there is nothing to speed up
+            continue
+        corners = [
+            (update.due_ms / MILLISECONDS_PER_SECOND, float(update.rate_sps))
+            for update in change.updates
+        ]
+        tail = (corners[-1][0] * 1.08, corners[-1][1])
+        call = change.call.replace("motorSetSpeed", f"{motor.name}SetSpeed", 1)
+        curves.append(Curve(name, (*corners, tail), call))
+    return tuple(curves)
+
+
+def _there_and_back(motor: MotorPlan) -> Curve:
+    """
+    Return what the example sketch does: one turn, and back.
+    """
+    steps = round(motor.steps_per_turn or _STEPS_OF_AN_EXAMPLE)
+    turn_s = steps / _EXAMPLE_SPS
+    corners = ((0, _EXAMPLE_SPS), (turn_s, -_EXAMPLE_SPS), (2 * turn_s, 0))
+    call = (
+        f"{motor.name}SetSpeed(MOTOR_CTRL_DRV_EN, "
+        f"motorTimerCalcPerSecond({_EXAMPLE_SPS}), {steps});"
+    )
+    return Curve(f"{steps} steps there, and back", (*corners, (2.1 * turn_s, 0)), call)
+
+
+def _draw(title: str, curves: Sequence[Curve]) -> Scene:
+    span_s = max(x for curve in curves for x, _ in curve.corners)
+    speeds = [y for curve in curves for _, y in curve.corners]
+    top, bottom = max(speeds) * 1.08, min(0.0, min(speeds) * 1.08)
+    scene = Scene(title, "; ".join(f"{c.name}: {c.call}" for c in curves), at(_WIDTH), at(_HEIGHT))
+
+    def x_of(seconds: float) -> float:
+        return _LEFT + seconds / span_s * (_WIDTH - _LEFT - _RIGHT)
+
+    def y_of(speed: float) -> float:
+        return _TOP + (top - speed) / (top - bottom) * (_HEIGHT - _TOP - _BOTTOM)
+
+    right, floor_y = _WIDTH - _RIGHT, y_of(bottom)
+    for seconds in ticks(span_s):
+        scene.stroke(f"M{at(x_of(seconds))} {_TOP}V{at(floor_y)}", "grid")
+        scene.write(x_of(seconds), floor_y + 12, f"{seconds:.6g}", "axis-text middle")
+    for speed in _both_ways(top, bottom):
+        scene.stroke(f"M{_LEFT} {at(y_of(speed))}H{right}", "zero" if speed == 0 else "grid")
+        scene.write(_LEFT - 5, y_of(speed) + 3, f"{speed:.6g}", "axis-text end")
+    for number, curve in enumerate(curves, start=1):
+        scene.stroke(_staircase(curve.corners, x_of, y_of), f"curve c{number}", curve.name)
+        x = _LEFT + 12 + (number - 1) * 130
+        scene.stroke(f"M{x} {_TOP - 9}h20", f"curve c{number}")
+        scene.write(x + 25, _TOP - 6, curve.name, "axis-text")
+    scene.write(_LEFT - 5, _TOP - 6, "steps/s", "axis-text end")
+    scene.write((_LEFT + right) / 2, _HEIGHT - 4, "time since the call, s", "axis-text middle")
+    return scene
+
+
+def _staircase(
+    corners: Sequence[Corner], x_of: Callable[[float], float], y_of: Callable[[float], float]
+) -> str:
+    """
+    Return the path that holds each speed until the next.
+    """
+    (x, y), *more = corners
+    start = f"M{at(x_of(0))} {at(y_of(0))}V{at(y_of(y))}" if x == 0 else ""
+    return start + "".join(f"H{at(x_of(x))}V{at(y_of(y))}" for x, y in more)
+
+
+def _both_ways(top: float, bottom: float) -> list[float]:
+    up = ticks(max(top, -bottom))
+    return sorted({*up, *(-speed for speed in up if speed <= -bottom)} - {-0.0} | {0})
+
+
+def ticks(largest: float) -> list[float]:
+    """
+    Return 0 and its multiples of 1, 2 or 5 times a power of ten up to *largest*: 4 to 11 of them.
+    """
+    power = 10 ** floor(log10(largest / 4))
+    step = max(power * factor for factor in (1, 2, 5) if power * factor <= largest / 4)
+    return [count * step for count in range(int(largest / step) + 1)]

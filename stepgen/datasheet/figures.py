@@ -1,0 +1,227 @@
+"""
+The tables of the datasheet: the plan's numbers and a verification's as finished text.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from stepgen.plan.model import MotorPlan, Plan, RateLimit
+from stepgen.plan.rates import Clock
+from stepgen.plan.timings import plan_setting
+from stepgen.units import deviation_ppm
+
+if TYPE_CHECKING:
+    from stepgen.datasheet.report import MotorFigures, Report
+
+NOT_VERIFIED = "not verified"
+_RATES_SPS = (1, 10, 30, 100, 200, 300, 500, 1_000, 2_000, 3_000, 5_000, 10_000, 20_000)
+
+Row = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """
+    A table: its heading, and rows whose first cell names them.
+    """
+
+    caption: str
+    heading: Row
+    rows: tuple[Row, ...]
+
+
+def wire_table(motor: MotorPlan) -> Table:
+    """
+    Return signal, pin, port bit and role of each wire of *motor*.
+    """
+    drive = motor.drive
+    shared = ", shared" if drive.shared_enables else ""
+    roles = dict.fromkeys(drive.wires, "steps")
+    roles |= dict.fromkeys(drive.enables, f"enable{shared}")
+    roles |= dict.fromkeys(drive.quiet, "stays LOW")
+    rows = tuple(
+        (wire.signal, wire.pin.label, wire.pin.bit.name, roles.get(wire, "direction"))
+        for wire in drive.every_wire
+    )
+    return Table(f"{motor.name}: wires", ("signal", "pin", "port bit", "what for"), rows)
+
+
+def ownership_table(plan: Plan) -> Table:
+    """
+    Return what each motor has for itself: timer, vector and ports.
+    """
+    rows = [
+        (
+            motor.name,
+            f"{motor.timing.timer.number} ({motor.timing.kind}, {motor.timing.event})",
+            motor.timing.vector,
+            ", ".join(sorted({wire.pin.bit.port for wire in motor.drive.every_wire})),
+            f"{motor.port_letters} owned" if motor.owns_ports else "none owned, all shared",
+        )
+        for motor in plan.motors
+    ]
+    heading = ("motor", "timer", "interrupt vector", "ports written", "ports for itself")
+    return Table("Timers, vectors and ports", heading, tuple(rows))
+
+
+def rate_table(motor: MotorPlan, plan: Plan) -> Table:
+    """
+    Return what the timer of *motor* makes of usual rates, and of the highest that is accepted.
+    """
+    f_cpu, turn = plan.board.f_cpu_hz, motor.steps_per_turn
+    fastest = plan.minimum_period_cycles
+    periods = [f_cpu // rate for rate in _RATES_SPS]
+    wanted = [(period, Fraction(rate)) for period, rate in zip(periods, _RATES_SPS, strict=True)]
+    allowed = [row for row in wanted if fastest < row[0] <= motor.timing.largest_period_cycles]
+    rows = []
+    for period, rate in (*allowed, (fastest, Fraction(f_cpu, fastest))):
+        setting = plan_setting(motor.timing, period)
+        clock = Clock(f_cpu, steps_per_turn=turn or Fraction(1))
+        real = clock.rate_sps(setting.period_cycles)
+        row = (
+            f"{float(rate):.7g}",
+            str(period),
+            f"{setting.prescaler} x {setting.top + 1}",
+            f"{float(real):.8g}",
+            f"{round(deviation_ppm(real, rate)):+d}" if real != rate else "0",
+        )
+        rows.append((*row, f"{float(clock.rpm(real)):.5g}") if turn else row)
+    heading = ("steps/s", "virtual TOP", "prescaler x ticks", "on the wire", "ppm off")
+    return Table(f"{motor.name}: rates", (*heading, "RPM") if turn else heading, tuple(rows))
+
+
+def safe_table(plan: Plan) -> Table:
+    """
+    Return the highest rate at which each motor loses no step, alone and beside what is named.
+    """
+    rows = tuple(
+        (
+            motor.name,
+            limit.beside,
+            f"{int(limit.steps_per_second)}",
+            f"{limit.period_cycles}",
+            _cause(limit),
+        )
+        for motor in plan.motors
+        for limit in plan.rates[motor.name]
+    )
+    heading = ("motor", "beside", "steps/s", "clocks", "what allows no more")
+    return Table("Highest rate without a lost step", heading, rows)
+
+
+def _cause(limit: RateLimit) -> str:
+    names = [text.partition(":")[0] for text in limit.unproven]
+    return f"{limit.cause} (not proven: {', '.join(names)})" if names else limit.cause
+
+
+def held_table(plan: Plan) -> Table:
+    """
+    Return how long interrupts may be off at some rates, and how late a step then is.
+    """
+    rows = tuple(
+        (
+            f"{int(held.steps_per_second)}",
+            *_both(held.stretch_cycles, plan),
+            *_both(held.late_cycles, plan),
+        )
+        for held in plan.held_off
+    )
+    heading = ("up to steps/s", "off at most, clocks", "us", "a step then late, clocks", "us")
+    return Table("How long the sketch may have interrupts off", heading, rows)
+
+
+def _both(cycles: int, plan: Plan) -> Row:
+    return (f"{cycles}", f"{cycles * 1e6 / plan.board.f_cpu_hz:.1f}")
+
+
+def interrupt_table(plan: Plan, report: "Report | None") -> Table:
+    """
+    Return the cycles of each step interrupt: as planned, as the program bounds, as measured.
+    """
+    motors = plan.motors
+
+    def planned(name: str, value: Callable[[MotorPlan], object]) -> Row:
+        return (name, *(str(value(motor)) for motor in motors))
+
+    def measured(name: str, value: "Callable[[MotorFigures], object]") -> Row:
+        if report is None:
+            return (name, *(NOT_VERIFIED for _ in motors))
+        return (name, *(str(value(report.motors[motor.name])) for motor in motors))
+
+    rows = [
+        planned("a step, response to RETI", lambda m: m.hot_path.usual_cycles),
+        planned("from the timer's flag to the pins", lambda m: m.hot_path.edge_cycles),
+        planned("the same at a boundary", lambda m: m.hot_path.boundary_edge_cycles),
+    ]
+    if any(motor.motion.watches_clock for motor in motors):
+        rows.insert(1, planned("a step that looks at the clock", _clock_watch))
+    if any(motor.hot_path.lap_cycles for motor in motors):
+        rows.insert(1, planned("a lap between two steps", _laps))
+    rows += [
+        planned("longest, allowed by the plan", lambda m: m.isr_bound_cycles),
+        measured("longest, by the linked program", lambda m: m.isr_cycles.bound),
+        measured("longest, measured", lambda m: m.isr_cycles.measured_max),
+        measured("mean of a step, measured", _mean),
+        measured("latest edge (jitter), measured", lambda m: m.jitter_cycles),
+    ]
+    rows.append(planned("interrupts off in a call", lambda m: m.masked_bound_cycles))
+    heading = ("clocks", *(motor.name for motor in motors))
+    return Table("Step interrupts", heading, tuple(rows))
+
+
+def _clock_watch(motor: MotorPlan) -> str:
+    return f"{motor.hot_path.clock_cycles}" if motor.motion.watches_clock else "none"
+
+
+def _laps(motor: MotorPlan) -> str:
+    return f"{motor.hot_path.lap_cycles[0]}" if motor.hot_path.lap_cycles else "none"
+
+
+def _mean(figures: "MotorFigures") -> str:
+    # Without the long run, which slow simulators leave out, there is no mean.
+    return f"{figures.cycles_per_step:g}" if figures.cycles_per_step else "not measured"
+
+
+def memory_table(plan: Plan, report: "Report | None") -> Table:
+    """
+    Return flash, RAM and stack that the library takes over an empty sketch.
+    """
+    mcu = plan.board.mcu
+    flash, ram, stack = (NOT_VERIFIED,) * 3
+    if report:
+        flash = f"{report.flash_bytes} bytes of {mcu.flash_bytes}"
+        ram = f"{report.ram_bytes} bytes of {mcu.ram_bytes}"
+        stack = f"{report.stack_bytes} bytes, at most {report.stack_bound_bytes}"
+    rows = (("flash", flash), ("RAM", ram), ("stack of the step interrupts", stack))
+    return Table("Memory, over an empty sketch", ("", "takes"), rows)
+
+
+def outcome(report: "Report | None") -> str:
+    """
+    Return what came out of the verification, in a few words.
+    """
+    if report is None:
+        return "not verified yet: run stepgen verify"
+    failed = sum(not check.passed for check in report.checks)
+    tools = f"{report.compiler} on {report.simulator}"
+    if report.passed:
+        return f"verified: {len(report.checks)} checks passed, {tools}"
+    return f"FAILED: {failed} of {len(report.checks)} checks, {tools}"
+
+
+def facts(plan: Plan) -> Iterator[tuple[str, str]]:
+    """
+    Yield the few figures that people look for first.
+    """
+    for motor in plan.motors:
+        safest = plan.rates[motor.name][-1]
+        yield (f"{motor.name}, up to", f"{int(safest.steps_per_second)} steps/s")
+        yield (f"{motor.name}, a step takes", f"{motor.hot_path.usual_cycles} clocks")
+    fastest = plan.held_off[-1]
+    stretch_us = fastest.stretch_cycles * 1e6 / plan.board.f_cpu_hz
+    yield (
+        f"interrupts off at {int(fastest.steps_per_second)} steps/s",
+        f"{stretch_us:.0f} us at most",
+    )

@@ -1,0 +1,256 @@
+"""
+The picture of the wiring: the board seen from above, its pins, drivers and motors.
+
+Each wire goes from its pin straight off the board into a lane of its own, along it to a column in
+front of the drivers, and from there to its input. Inputs are in the order in which wires
+arrive, so that those of one side of the board never cross.
+"""
+
+from dataclasses import dataclass, field
+
+from stepgen.datasheet.drivers import (
+    MOTOR_WIDTH,
+    ROW,
+    TITLE_HEIGHT,
+    WIDTH,
+    block_height,
+    draw_driver,
+    driver_of,
+    input_y,
+)
+from stepgen.datasheet.scene import Scene, at
+from stepgen.devices.outlines import GROUND, PITCH_MIL, Outline, Place, outline_of
+from stepgen.plan.model import MotorPlan, Plan
+
+_LARGEST_BOARD = (400, 260)
+_LARGEST_SCALE = 0.2  # units per mil
+_LEFT = 38  # room for connectors
+_LANE, _COLUMN = 7, 8
+_NAME_ROOM = 34  # in front of a driver, for the pins' names
+_GAP = 10
+_SIDES = ("up", "right", "down")
+_COLORS = 6
+
+
+@dataclass
+class _Wire:
+    """
+    One wire; its lane, column and ends are found one after the other.
+    """
+
+    motor: MotorPlan
+    signal: str
+    place: Place
+    title: str
+    css: str
+    x: float = 0
+    y: float = 0
+    lane: float = 0
+    column: int = 0
+    end: float = 0
+
+
+@dataclass
+class _Block:
+    """
+    A motor with its driver, and the wires that arrive there.
+    """
+
+    motor: MotorPlan
+    wires: list[_Wire] = field(default_factory=list)
+    top: float = 0
+
+
+def wiring_scene(plan: Plan) -> Scene:
+    """
+    Return the picture of all wires of *plan*.
+
+    Raises:
+        KeyError: The board, or one of the pins, is on no outline.
+    """
+    outline = outline_of(plan.board)
+    scale = _scale(outline)
+    blocks = _blocks(plan, outline)
+    wires = [wire for block in blocks for wire in block.wires]
+    width, height = outline.width * scale, outline.height * scale
+    ups = _lanes(blocks, "up")
+    top = _GAP + max(len(ups) * _LANE, TITLE_HEIGHT) + _GAP
+    bottom = _stack(blocks, top, height)
+    for index, wire in enumerate(ups):
+        wire.lane = top - _GAP - (len(ups) - 1 - index) * _LANE
+    downs = _lanes(blocks, "down")
+    for index, wire in enumerate(downs):
+        wire.lane = bottom + _GAP + (len(downs) - 1 - index) * _LANE
+    for wire in wires:
+        wire.x, wire.y = _LEFT + wire.place.x * scale, top + wire.place.y * scale
+    columns = _columns(ups, downs, [wire for wire in wires if _side(wire) == "right"], scale)
+    driver_x = _LEFT + width + _GAP + columns * _COLUMN + _NAME_ROOM
+    scene = Scene(
+        title=f"Wiring on the {plan.board.title}",
+        description="; ".join(wire.title for wire in wires),
+        width=at(driver_x + WIDTH + MOTOR_WIDTH + _GAP),
+        height=at(bottom + _GAP + len(downs) * _LANE + 4),
+    )
+    _draw_board(scene, plan, outline, scale, top)
+    for place in outline.places():
+        _draw_pin(scene, place, scale, top, is_used=place in {wire.place for wire in wires})
+    for wire in wires:
+        scene.stroke(_path(wire, driver_x, scale), wire.css, wire.title)
+        scene.dot(wire.x, wire.y, 3, f"pin {wire.css}", wire.title)
+        scene.write(driver_x - 4, wire.end - 2.5, wire.place.label, "pin-name end")
+    for block in blocks:
+        looks = driver_of(block.motor)
+        names = [looks.inputs.get(wire.signal, wire.signal) for wire in block.wires]
+        draw_driver(scene, block.motor, driver_x, block.top, names)
+    return scene
+
+
+def _scale(outline: Outline) -> float:
+    widest, highest = _LARGEST_BOARD
+    return min(_LARGEST_SCALE, widest / outline.width, highest / outline.height)
+
+
+def _side(wire: _Wire) -> str:
+    return wire.place.header.side
+
+
+def _blocks(plan: Plan, outline: Outline) -> list[_Block]:
+    """
+    Return the motors, those whose wires leave upwards first, with their wires in order of arrival.
+    """
+    places = {place.label: place for place in outline.places()}
+    grounds = [place for place in outline.places() if place.label == GROUND]
+    blocks = []
+    for motor in plan.motors:
+        plugged = driver_of(motor).is_plugged
+        found = [
+            _Wire(
+                motor,
+                wire.signal,
+                places[wire.pin.label],
+                f"motor {motor.name}, {wire.signal}: {wire.pin.label} ({wire.pin.bit.name})",
+                f"wire w{index % _COLORS + 1}{' plugged' if plugged else ''}",
+            )
+            for index, wire in enumerate(motor.drive.every_wire)
+        ]
+        if not plugged:
+            place = max(grounds, key=lambda place: place.x)
+            found.append(
+                _Wire(motor, GROUND, place, f"motor {motor.name}, ground: GND", "wire ground")
+            )
+        found.sort(key=_arrival)
+        blocks.append(_Block(motor, found))
+    return sorted(blocks, key=lambda block: _mean_side(block.wires))
+
+
+def _arrival(wire: _Wire) -> tuple[int, int]:
+    order = {"up": wire.place.x, "right": wire.place.y, "down": -wire.place.x}
+    return _SIDES.index(_side(wire)), order[_side(wire)]
+
+
+def _mean_side(wires: list[_Wire]) -> float:
+    return sum(_SIDES.index(_side(wire)) for wire in wires) / len(wires)
+
+
+def _lanes(blocks: list[_Block], side: str) -> list[_Wire]:
+    """
+    Return the wires of *side*, the one whose lane is farthest from the board first.
+    """
+    ordered = blocks if side == "up" else list(reversed(blocks))
+    return [
+        wire
+        for block in ordered
+        for wire in (block.wires if side == "up" else reversed(block.wires))
+        if _side(wire) == side
+    ]
+
+
+def _stack(blocks: list[_Block], top: float, height: float) -> float:
+    """
+    Place the drivers one below the other, beside the board; return where the lower of both ends.
+    """
+    needed = sum(block_height(len(block.wires)) for block in blocks)
+    y = top - TITLE_HEIGHT + max(0.0, (height + TITLE_HEIGHT - needed) / 2)
+    for block in blocks:
+        block.top = y
+        for index, wire in enumerate(block.wires):
+            wire.end = input_y(y, index)
+        y += block_height(len(block.wires))
+    return max(top + height, y - ROW)
+
+
+def _columns(ups: list[_Wire], downs: list[_Wire], rights: list[_Wire], scale: float) -> int:
+    """
+    Give each wire a column, counted from the drivers, in which no other wire is at its height.
+    """
+    taken: list[list[tuple[float, float]]] = []
+
+    def place(wire: _Wire, first: int) -> int:
+        start = wire.lane or _leaving_y(wire, scale)
+        low, high = sorted((start, wire.end))
+        column = first
+        while column < len(taken) and any(a < high and low < b for a, b in taken[column]):
+            column += 1
+        if column == len(taken):
+            taken.append([])
+        taken[column].append((low - 2, high + 2))
+        wire.column = column
+        return column + 1
+
+    for group in (ups, downs):
+        free = 0
+        for wire in group:
+            free = place(wire, free)
+    free = len(taken)
+    for wire in rights:
+        free = place(wire, free)
+    return len(taken)
+
+
+def _leaving_y(wire: _Wire, scale: float) -> float:
+    inner = wire.place.header.is_inner
+    return wire.y + (PITCH_MIL * scale / 2 if inner else 0)
+
+
+def _path(wire: _Wire, driver_x: float, scale: float) -> str:
+    """
+    Return the way of *wire*; from an inner row it goes between two pins of the outer one.
+    """
+    column = driver_x - _NAME_ROOM - wire.column * _COLUMN
+    start = f"M{at(wire.x)} {at(wire.y)}"
+    if _side(wire) == "right":
+        off = f"V{at(_leaving_y(wire, scale))}"
+    else:
+        aside = PITCH_MIL * scale / 2 if wire.place.header.is_inner else 0
+        off = f"H{at(wire.x + aside)}V{at(wire.lane)}"
+    return f"{start}{off}H{at(column)}V{at(wire.end)}H{at(driver_x)}"
+
+
+def _draw_board(scene: Scene, plan: Plan, outline: Outline, scale: float, top: float) -> None:
+    corners = [(_LEFT + x * scale, top + y * scale) for x, y in outline.corners]
+    edge = "L".join(f"{at(x)} {at(y)}" for x, y in corners)
+    scene.stroke(f"M{edge}z", "board", plan.board.title)
+    for hole in outline.holes:
+        scene.dot(_LEFT + hole[0] * scale, top + hole[1] * scale, 63 * scale, "hole")
+    for part in outline.parts:
+        left, upper = _LEFT + part.x * scale, top + part.y * scale
+        scene.box(left, upper, part.width * scale, part.height * scale, "part")
+        name = plan.board.mcu.title if part.name == "chip" else part.name
+        middle = (left + part.width * scale / 2, upper + part.height * scale / 2 + 3)
+        scene.write(*middle, name, "on-part middle")
+    x, y = outline.title
+    scene.write(_LEFT + x * scale, top + y * scale, plan.board.title, "board-name middle")
+
+
+def _draw_pin(scene: Scene, place: Place, scale: float, top: float, *, is_used: bool) -> None:
+    x, y = _LEFT + place.x * scale, top + place.y * scale
+    scene.dot(x, y, 2, "hole")
+    css = "used" if is_used else "free"
+    if place.header.side == "up":
+        scene.write(x + 2.5, y + 4, place.label, f"{css} end", -90)
+    elif place.header.side == "down":
+        scene.write(x + 2.5, y - 4, place.label, css, -90)
+    elif place.header.is_inner:
+        scene.write(x - 5, y + 2.5, place.label, f"{css} end")
+    else:
+        scene.write(x + 5, y + 2.5, place.label, css)

@@ -1,0 +1,185 @@
+"""
+The datasheet in Chromium: it can be read in light and dark, and fits on two pages of paper.
+"""
+
+import json
+import re
+import shutil
+import subprocess
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PIL import Image
+from pypdf import PdfReader
+
+from stepgen import api
+from tests.datasheet.pages import page, report_of, spec
+
+LOOK = Path(__file__).with_name("look.js")
+DARK = {"light": (), "dark": ("--force-dark-mode",)}
+PAPER = {"light": (0xFF, 0xFF, 0xFF), "dark": (0x12, 0x17, 0x1D)}  # --paper in style.css.j2
+A4_POINTS = (595, 842)
+# A shield on an Uno, two motors on a Mega, small boards with four wires, ramps, and timer 2.
+LOOKED_AT = (
+    "uno_motor_shield",
+    "mega_pan_tilt",
+    "nano_uln2003_port_c",
+    "pro-mini-8mhz_28byj48",
+    "mega_stacked_shields_variable",
+)
+PRINTED = (*LOOKED_AT, "uno_two_motors", "uno_servo_beside_variable", "mega1280_two_motors")
+
+CROWDED = """\
+library: Crowded
+board: mega
+motors:
+  aMotorWithTheLongestNameOfAll31: {drive: {kind: four-wire, pins: [D22, D23, D24, D25]}, timer: 1}
+  second: {drive: {kind: four-wire, pins: [D50, D51, A0, A15]}, timer: 3}
+  third: {drive: motor-shield, timer: 4}
+  fourth: {drive: {kind: four-wire, pins: [D0, D21, D38, D39]}, timer: 5, motion: update-events}
+"""
+
+
+def chromium(folder: Path, text: str, *options: str) -> str:
+    """
+    Show the page *text* in Chromium; return what that prints.
+    """
+    found = shutil.which("chromium")
+    assert found, "there is no chromium; `make setup` installs it"
+    (folder / "page.html").write_text(text, encoding="utf-8")
+    return subprocess.run(
+        [
+            found,
+            "--headless=new",
+            "--no-sandbox",  # tests may run as root; the page has no script of its own
+            "--disable-gpu",
+            "--hide-scrollbars",
+            "--no-first-run",
+            f"--user-data-dir={folder / 'profile'}",
+            *options,
+            (folder / "page.html").as_uri(),
+        ],
+        check=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        encoding="utf-8",
+        timeout=120,
+    ).stdout
+
+
+def looked_at(folder: Path, text: str, *options: str) -> dict[str, Any]:
+    """
+    Return what look.js finds in the page *text*.
+    """
+    script = LOOK.read_text(encoding="utf-8")
+    shown = text.replace("</body>", f"<script>{script}</script></body>")
+    dumped = chromium(folder, shown, "--dump-dom", *options)
+    match = re.search(r'<pre id="found">(.*?)</pre>', dumped, re.DOTALL)
+    assert match
+    found: dict[str, Any] = json.loads(unescape(match[1]))
+    return found
+
+
+@pytest.mark.parametrize("scheme", DARK)
+@pytest.mark.parametrize("name", LOOKED_AT)
+def test_everything_can_be_read(tmp_path: Path, name: str, scheme: str) -> None:
+    """
+    Contrast is WCAG's AA for each text and line; no label leaves its picture or covers another.
+    """
+    found = looked_at(tmp_path, page(spec(name)), "--window-size=1100,4000", *DARK[scheme])
+
+    assert found["dark"] == (scheme == "dark")
+    assert found["texts"] > 150
+    assert found["lines"] > 5
+    assert found["faint"] == []
+    assert found["outside"] == []
+    assert found["overlapping"] == []
+
+
+def test_a_crowded_picture_can_be_read(tmp_path: Path) -> None:
+    """
+    Four motors with long names on one Mega, with wires from every side and both inner rows.
+    """
+    path = tmp_path / "crowded.yaml"
+    path.write_text(CROWDED, encoding="utf-8")
+    found = looked_at(tmp_path, page(path), "--window-size=1100,5000")
+
+    assert found["faint"] == []
+    assert found["outside"] == []
+    assert found["overlapping"] == []
+
+
+@pytest.mark.parametrize("outcome", ["passed", "failed"])
+@pytest.mark.parametrize("scheme", DARK)
+def test_the_outcome_can_be_read(tmp_path: Path, scheme: str, outcome: str) -> None:
+    """
+    So can the outcome of a verification, good or bad.
+    """
+    path = spec("uno_motor_shield")
+    checks = [{"name": "the pattern", "passed": outcome == "passed", "detail": "step 3"}]
+    report = report_of(api.plan(path), passed=outcome == "passed", checks=checks)
+    found = looked_at(tmp_path, page(path, report), "--window-size=1100,4000", *DARK[scheme])
+
+    assert found["faint"] == []
+
+
+def test_it_needs_no_scrolling_sideways(tmp_path: Path) -> None:
+    """
+    A window of 1000 pixels shows the whole width.
+    """
+    found = looked_at(tmp_path, page(spec("mega_pan_tilt")), "--window-size=1000,800")
+
+    assert found["wide"] <= 0
+
+
+def test_faint_and_crowded_text_is_noticed(tmp_path: Path) -> None:
+    """
+    The look itself can fail: grey text, and two labels in the corner, one upon the other.
+    """
+    text = page(spec("uno_motor_shield")).replace("--ink: #17202a", "--ink: #999999")
+    text = re.sub(r'x="[\d.]+" y="[\d.]+" transform="">(PWM [AB])<', r'x="1" y="1">\1<', text)
+    found = looked_at(tmp_path, text, "--window-size=1100,4000")
+
+    assert any(line.startswith("DIR A: ") for line in found["faint"])
+    assert {"PWM A", "PWM B"} <= set(found["outside"])
+    assert "PWM B and PWM A" in found["overlapping"]
+
+
+@pytest.mark.parametrize("scheme", DARK)
+def test_the_picture_of_the_page(tmp_path: Path, scheme: str) -> None:
+    """
+    A screenshot shows the scheme's paper at the edge, and a board, wires and text on it.
+    """
+    shot = tmp_path / "shot.png"
+    options = (f"--screenshot={shot}", "--window-size=1100,800", *DARK[scheme])
+    chromium(tmp_path, page(spec("mega_pan_tilt")), *options)
+    with Image.open(shot) as opened:
+        picture = opened.convert("RGB")
+
+    assert picture.size == (1100, 800)
+    assert picture.getpixel((2, 2)) == PAPER[scheme]
+    colors = {color: count for count, color in picture.getcolors(1 << 20) or []}
+    board = {"light": (0xD9, 0xEC, 0xE9), "dark": (0x16, 0x37, 0x3B)}[scheme]
+    assert colors[board] > 50_000  # of 880 000 pixels
+    assert len(colors) > 100
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_it_prints_on_two_pages(tmp_path: Path, name: str) -> None:
+    """
+    With one motor and with two, with all that a verification adds.
+    """
+    path = spec(name)
+    paper = tmp_path / "page.pdf"
+    text = page(path, report_of(api.plan(path)))
+    chromium(tmp_path, text, f"--print-to-pdf={paper}", "--no-pdf-header-footer")
+    pages = PdfReader(paper).pages
+
+    assert len(pages) == 2
+    for one in pages:
+        width, height = one.mediabox.width, one.mediabox.height
+        assert (round(width), round(height)) == A4_POINTS
+    assert "Wiring" in pages[0].extract_text()
+    assert "45 checks passed" in pages[1].extract_text()

@@ -1,0 +1,254 @@
+"""
+The datasheet as text: all that the plan says is there, unchanged, and nothing else.
+"""
+
+import json
+import re
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from stepgen import api
+from stepgen.datasheet.page import PATH, render_datasheet
+from stepgen.datasheet.wiring import wiring_scene
+from stepgen.devices import Board, boards
+from stepgen.devices.outlines import OUTLINES, Outline, outline_of
+from tests.datasheet.pages import SPECS, Reader, page, report_of, spec, words
+
+MOST_BYTES = 50_000
+HOSTILE = (
+    "</style><script>alert(1)</script>",
+    '"\' onload=alert(1) x="',
+    "{{ page.name }} %% for x in y",
+    "<b>&amp;</b> ]]> --> <!--",
+    "long and \u00fcber " * 30,
+)
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_every_library_has_its_page(path: Path, tmp_path: Path) -> None:
+    """
+    The page in a library is the page of its spec, wherever that lies; it is small and complete.
+    """
+    copy = tmp_path / "elsewhere.yaml"
+    copy.write_text(path.read_text(encoding="utf-8"), encoding="utf-8")
+    text = api.generate(path)[PATH]
+
+    assert text == page(copy) == api.datasheet(path)
+    assert len(text.encode()) < MOST_BYTES
+    assert not re.search(r"<script|<link|<img|@import|url\(|\bsrc=|https?:|file:", text)
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_every_wire_is_drawn_from_its_pin_to_the_driver(path: Path) -> None:
+    """
+    Each wire has a line that begins at its pin and ends at the left edge of a driver.
+    """
+    plan = api.plan(path)
+    scene = wiring_scene(plan)
+    pins = {(dot.title, dot.x, dot.y) for dot in scene.dots}
+    edges = [float(box.d[1:].split()[0]) for box in scene.strokes if box.css == "driver"]
+    lines = {stroke.title: stroke.d for stroke in scene.strokes if "wire" in stroke.css.split()}
+
+    assert len(edges) == len(plan.motors)
+    for motor in plan.motors:
+        for wire in motor.drive.every_wire:
+            title = f"motor {motor.name}, {wire.signal}: {wire.pin.label} ({wire.pin.bit.name})"
+            way = lines[title]
+            start = re.match(r"M([\d.]+) ([\d.]+)", way)
+            assert start
+            assert (title, start[1], start[2]) in pins
+            assert float(way.rpartition("H")[2]) == edges[0]
+            assert title in Reader(page(path)).titles
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_no_two_wires_lie_on_each_other(path: Path) -> None:
+    """
+    Lines may cross, but none runs along another, unless both come from one pin.
+    """
+    used: dict[tuple[str, str], list[tuple[float, float, str]]] = {}
+    for stroke in wiring_scene(api.plan(path)).strokes:
+        if "wire" not in stroke.css.split():
+            continue
+        pin = stroke.title.rpartition(": ")[2]
+        x, y = map(float, stroke.d[1:].split("H")[0].split("V")[0].split())
+        for turn, end in re.findall(r"([HV])([\d.]+)", stroke.d):
+            along, across = (x, y) if turn == "H" else (y, x)
+            low, high = sorted((along, float(end)))
+            for other_low, other_high, other in used.get((turn, f"{across:g}"), []):
+                assert other == pin or high <= other_low or other_high <= low, stroke.title
+            used.setdefault((turn, f"{across:g}"), []).append((low, high, pin))
+            x, y = (float(end), y) if turn == "H" else (x, float(end))
+
+
+@pytest.mark.parametrize("board", boards(), ids=lambda board: board.name)
+def test_every_board_can_be_drawn(board: Board) -> None:
+    """
+    A board has one outline, each of its pins is on it once, and ground is there.
+    """
+    labels = [place.label for place in outline_of(board).places()]
+
+    assert sum(board.name in outline.boards for outline in OUTLINES) == 1
+    assert "GND" in labels
+    assert [labels.count(pin.label) for pin in board.pins] == [1] * len(board.pins)
+
+
+@pytest.mark.parametrize("outline", OUTLINES, ids=lambda outline: outline.boards[0])
+def test_pins_lie_on_the_board(outline: Outline) -> None:
+    """
+    No pin is beside the board, and none on another.
+    """
+    places = [(place.x, place.y) for place in outline.places()]
+
+    assert all(0 < x < outline.width and 0 < y < outline.height for x, y in places)
+    assert len(set(places)) == len(places)
+
+
+def test_the_headers_of_an_uno_are_where_its_shields_have_them() -> None:
+    """
+    Pin 7 and pin 8 are 160 mil apart, A5 and pin 0 stand above each other, 1900 mil apart.
+
+    Source: Arduino's drawing of the Uno Rev3.
+    """
+    places = {place.label: place for place in OUTLINES[0].places()}
+
+    assert places["D7"].x - places["D8"].x == 160
+    assert (places["A5"].x, places["A5"].y - places["D0"].y) == (places["D0"].x, 1900)
+
+
+def test_a_drive_without_looks_of_its_own_is_drawn_from_its_wires() -> None:
+    """
+    Its inputs are called as its signals, and each has its wire.
+    """
+    plan = api.plan(spec("uno_motor_shield"))
+    [motor] = plan.motors
+    other = replace(motor, drive=replace(motor.drive, kind="another", title="another driver"))
+    scene = wiring_scene(replace(plan, motors=(other,)))
+
+    signals = {wire.signal for wire in motor.drive.every_wire}
+    assert signals | {"GND", "another driver"} <= {label.text for label in scene.labels}
+    assert sum("wire" in stroke.css.split() for stroke in scene.strokes) == len(signals) + 1
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_text_of_a_spec_stays_text(tmp_path: Path, text: str) -> None:
+    """
+    Whatever author and sentence hold, the page has the same tags and attributes.
+    """
+    source = spec("mega_pan_tilt").read_text(encoding="utf-8")
+    pages = []
+    for words_of_spec in ("plain", text):
+        path = tmp_path / "spec.yaml"
+        lines = f"sentence: {json.dumps(words_of_spec)}\n  author: {json.dumps(words_of_spec)}"
+        head, _, tail = source.partition("sentence: ")
+        path.write_text(head + lines + "\n" + tail.partition("\n")[2], encoding="utf-8")
+        plan = api.plan(path)
+        failed = [{"name": words_of_spec, "passed": False, "detail": words_of_spec}]
+        report = report_of(plan, passed=False, checks=failed, compiler=words_of_spec)
+        pages.append(Reader(render_datasheet(plan, "", report)).tags)
+
+    assert pages[0] == pages[1]
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_the_figures_are_those_of_the_plan(path: Path) -> None:
+    """
+    Highest rates, cycles of the interrupts and stretches with interrupts off.
+    """
+    plan = api.plan(path)
+    tables = Reader(page(path)).captions
+    safe = [row[:4] for row in tables["Highest rate without a lost step"][1:]]
+    held = tables["How long the sketch may have interrupts off"][1:]
+    cycles = {row[0]: row[1:] for row in tables["Step interrupts"]}
+
+    assert safe == [
+        [name, limit.beside, str(int(limit.steps_per_second)), str(limit.period_cycles)]
+        for name, limits in plan.rates.items()
+        for limit in limits
+    ]
+    assert [(row[1], row[3]) for row in held] == [
+        (str(one.stretch_cycles), str(one.late_cycles)) for one in plan.held_off
+    ]
+    assert cycles["a step, response to RETI"] == [str(m.hot_path.usual_cycles) for m in plan.motors]
+    assert cycles["longest, allowed by the plan"] == [str(m.isr_bound_cycles) for m in plan.motors]
+    for motor in plan.motors:
+        assert [row[:3] for row in tables[f"{motor.name}: wires"][1:]] == [
+            [wire.signal, wire.pin.label, wire.pin.bit.name] for wire in motor.drive.every_wire
+        ]
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_the_rates_are_what_the_timer_makes(path: Path) -> None:
+    """
+    The rate on the wire is f / (prescaler x ticks), the deviation that from the wanted rate.
+
+    A period is the clock over the rate, cut off, and then cut off again to whole ticks.
+    """
+    plan = api.plan(path)
+    tables = Reader(page(path)).captions
+    for motor in plan.motors:
+        rows = tables[f"{motor.name}: rates"][1:]
+        assert len(rows) > 5
+        assert rows[-1][1] == str(plan.minimum_period_cycles)
+        for wanted, period, ticks, real, ppm, *rpm in rows:
+            prescaler, count = map(int, ticks.split(" x "))
+            exact = Fraction(plan.board.f_cpu_hz, prescaler * count)
+            assert 0 <= int(period) - prescaler * count < prescaler
+            assert float(real) == pytest.approx(float(exact), rel=1e-7)
+            assert int(ppm) == pytest.approx((float(exact) / float(wanted) - 1) * 1e6, abs=1)
+            turn = motor.steps_per_turn
+            assert len(rpm) == (turn is not None)
+            if turn is not None:
+                assert float(rpm[0]) == pytest.approx(float(exact * 60 / turn), rel=1e-4)
+
+
+def test_what_only_a_verification_tells_is_not_claimed_before() -> None:
+    """
+    The page of the library says that nothing is verified yet, and how to do it.
+    """
+    text = page(spec("mega_pan_tilt"))
+
+    assert text.count("not verified yet: run stepgen verify") == 2
+    assert {row[1] for row in Reader(text).captions["Memory, over an empty sketch"][1:]} == {
+        "not verified"
+    }
+
+
+def test_a_verification_fills_its_figures_in() -> None:
+    """
+    Memory, measured cycles, jitter, and how many checks passed with what.
+    """
+    path = spec("mega_pan_tilt")
+    text = page(path, report_of(api.plan(path)))
+    tables = Reader(text).captions
+    cycles = {row[0]: row[1:] for row in tables["Step interrupts"]}
+
+    assert cycles["longest, by the linked program"] == ["7101", "7102"]
+    assert cycles["longest, measured"] == ["7001", "7002"]
+    assert cycles["mean of a step, measured"] == ["7201.5", "7202.5"]
+    assert cycles["latest edge (jitter), measured"] == ["7301", "7302"]
+    assert tables["Memory, over an empty sketch"][1:] == [
+        ["flash", "7401 bytes of 262144"],
+        ["RAM", "7501 bytes of 8192"],
+        ["stack of the step interrupts", "7601 bytes, at most 7701"],
+    ]
+    assert text.count("verified: 45 checks passed, gcc-5.4 on simavr 1.6") == 2
+    assert "not verified" not in text
+
+
+def test_a_failed_check_is_shown_with_its_reason() -> None:
+    """
+    Nobody can take the page of a library that failed for that of one that passed.
+    """
+    path = spec("uno_motor_shield")
+    checks = [
+        {"name": "single steps", "passed": True, "detail": ""},
+        {"name": "the pattern", "passed": False, "detail": "step 3 shows 0110"},
+    ]
+    text = page(path, report_of(api.plan(path), passed=False, checks=checks))
+
+    assert "FAILED: 1 of 2 checks, gcc-5.4 on simavr 1.6" in words(text)
+    assert "the pattern: step 3 shows 0110" in words(text)
