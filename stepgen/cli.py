@@ -76,7 +76,6 @@ def _discard_output() -> None:
 app = typer.Typer(
     cls=_Commands,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     epilog="Example: stepgen generate specs/uno_motor_shield.yaml --output ~/Arduino/libraries",
 )

@@ -225,3 +225,23 @@ def test_rich_is_not_imported_for_one_spec(pan: Path, command: str) -> None:
     )
 
     assert done.stdout.endswith("False False\n")
+
+
+@pytest.mark.parametrize(
+    ("typed", "completed"), [("stepgen da", "datasheet"), ("stepgen ma", "matrix")]
+)
+def test_the_shell_completes_commands(typed: str, completed: str) -> None:
+    """
+    After `stepgen --install-completion` a shell asks stepgen how a word goes on.
+    """
+    done = subprocess.run(
+        [sys.executable, "-m", "stepgen"],
+        env=os.environ
+        | {"_STEPGEN_COMPLETE": "complete_bash", "COMP_WORDS": typed, "COMP_CWORD": "1"},
+        capture_output=True,
+        check=False,
+        encoding="utf-8",
+        timeout=60,
+    )
+
+    assert completed in done.stdout.split()
