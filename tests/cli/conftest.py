@@ -34,7 +34,7 @@ def stepgen(tmp_path: Path) -> Stepgen:
     def run(*arguments: str | Path) -> Run:
         command = [sys.executable, "-m", "stepgen", *map(str, arguments)]
         done = subprocess.run(
-            command, cwd=tmp_path, capture_output=True, check=False, encoding="utf-8", timeout=60
+            command, cwd=tmp_path, capture_output=True, check=False, encoding="utf-8", timeout=300
         )
         assert "Traceback" not in done.stderr
         return Run(done.returncode, done.stdout, done.stderr)
