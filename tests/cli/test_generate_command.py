@@ -32,7 +32,7 @@ def test_the_library_is_written_into_its_folder(
     run = stepgen("generate", pan.name)
 
     assert run.code == 0
-    assert run.out.splitlines()[0] == "Pan: 11 written"
+    assert run.out.splitlines()[0] == "Pan: 13 written"
     assert "  written src/Pan.h" in run.out
     written = tree(tmp_path / "Pan")
     assert {path: text.encode() for path, text in api.generate(pan).items()}.items() <= (
