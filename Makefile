@@ -103,7 +103,7 @@ $(STAMPS)/runtime: pyproject.toml | $(STAMPS)/venv
 # --group came with pip 25.1; Debian 12's is older.
 $(STAMPS)/dev: pyproject.toml | $(STAMPS)/venv
 	$(PIP_INSTALL) --upgrade 'pip>=25.1'
-	$(PIP_INSTALL) --editable '.[verify,avr8js]' --group dev
+	$(PIP_INSTALL) --editable '.[verify,avr8js,proof]' --group dev
 	@touch $@ $(STAMPS)/runtime
 
 $(STAMPS)/avr8js: Makefile $(STAMPS)/dev

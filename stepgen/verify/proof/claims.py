@@ -3,20 +3,18 @@ What each function must do, beyond keeping the invariant: what the reference mod
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import z3
 
+from stepgen.reference.contract import TimingKind
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.motion import Motion
 from stepgen.reference.sequences import Pattern
 from stepgen.reference.stimuli import SetSpeed
-from stepgen.reference.timer import TimerSetting
 from stepgen.reference.updates import Updates
 from stepgen.reference.verdict import stops, verdict
-from stepgen.verify.proof.library import PRESCALERS, Chosen, Library, interval_ticks, right_choice
-from stepgen.verify.proof.machine import Machine
+from stepgen.verify.proof.library import PRESCALERS, Library, interval_ticks, right_choice
 from stepgen.verify.proof.memory import CLOCK
 from stepgen.verify.proof.numbers import Number, term, wide
 from stepgen.verify.proof.paths import Paths
@@ -29,65 +27,25 @@ from stepgen.verify.proof.state import (
     RUNNING,
     THINK,
     UPDATE_STEPS,
-    State,
+)
+from stepgen.verify.proof.way import (
+    NO_STEP,
+    Way,
+    low_millis,
+    millis_left,
+    position,
+    same_but_status,
 )
 
 _REACHED = 0x10
 _FAR = 0x7FFF
-_NO_STEP = z3.BitVecVal(0, 32)
-
-
-@dataclass(frozen=True)
-class Way:
-    """
-    One way through a function: what was before, what is after, and what it returns.
-    """
-
-    library: Library
-    paths: Paths
-    machine: Machine
-    chosen: Chosen
-    before: State
-    after: State
-    arguments: list[Any]
-    result: Any
-
-    def number(self, value: Any) -> Any:  # noqa: ANN401 - z3 has no types; mypy takes it for an int
-        """
-        Return the unsigned *value* for the model.
-        """
-        return Number(wide(value), self.paths)
-
-    @property
-    def facts(self) -> MotorFacts:
-        """
-        Return what the model is told; the choice of a setting is proven by itself.
-        """
-        motion = "update-events" if self.before.has("eventAt") else "constant"
-        return _Unset((), Pattern((), ()), self.library.min_top, "hold", motion)
-
-    @property
-    def next_is_chosen(self) -> Any:  # noqa: ANN401
-        """
-        Tell whether the next interval is what is chosen for the virtual TOP of a call or an event.
-        """
-        top = self.after.of("top") if self.after.has("top") else self.arguments[1]
-        same = [self.after.of("next", *part) == value for part, value in self.chosen.of(top).items()]
-        taken_over = [self.after.of("next", "select") == 0] if self.after.has("next", "select") else []
-        return z3.Or(z3.And(*same), *taken_over)
-
-
-class _Unset(MotorFacts):
-    def setting(self, virtual_cycles: int) -> TimerSetting:
-        del virtual_cycles
-        return TimerSetting(1, 1)
 
 
 def choice(library: Library, paths: Paths, period: Any, parts: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
     """
     Yield what must hold of the *parts* that are chosen for *period*.
     """
-    timing = "fast-pwm" if ("select",) in parts else "compare"
+    timing: TimingKind = "fast-pwm" if ("select",) in parts else "compare"
     facts = MotorFacts((), Pattern((), ()), library.min_top, "hold", timing=timing)
     number: Any = Number(wide(period), paths)
     model = facts.setting(number)
@@ -110,7 +68,7 @@ def set_speed(way: Way) -> Iterator[tuple[str, Any]]:
     yield "the call returns what the model does", way.result == int(code)
     yield "a call makes no step", way.after.position == way.before.position
     if code < 0:
-        yield "a refused call changes nothing but the status", _same_but_status(way)
+        yield "a refused call changes nothing but the status", same_but_status(way)
     elif stops(call):
         yield "a stop stops", z3.Not(way.after.is_in(RUNNING))
     else:
@@ -143,14 +101,16 @@ def _started_events(way: Way, motion: Motion) -> Iterator[tuple[str, Any]]:
     if limited:
         yield "the time limit is the limit", wide(after.of("limit")) == term(motion.millis_limit)
         yield "it counts from now", after.of("start") == way.before.values[CLOCK]
-    yield "the interrupt looks at the clock at once", after.of("wake") == _low(after)
+    yield "the interrupt looks at the clock at once", after.of("wake") == low_millis(after)
     updates = motion.updates
-    yield "update events are left as the model says", wide(after.of("updates")) == term(
-        motion.updates_left
+    yield (
+        "update events are left as the model says",
+        wide(after.of("updates")) == term(motion.updates_left),
     )
     if updates is not None:
-        yield "they change what they should", wide(after.of("modification")) == term(
-            updates.modification
+        yield (
+            "they change what they should",
+            wide(after.of("modification")) == term(updates.modification),
         )
         yield "the first is one interval away", after.to_event == term(updates.due_at)
 
@@ -165,15 +125,16 @@ def update(way: Way) -> Iterator[tuple[str, Any]]:
     model = Updates(control, modification, interval, left, 0, way.library.min_top)  # due at 0
     virtual, stopped = model.apply(way.number(before.of("top")))
     yield "the virtual TOP is the model's", wide(after.of("top")) == term(virtual)
-    yield "the modification is the model's", wide(after.of("modification")) == term(
-        model.modification
+    yield (
+        "the modification is the model's",
+        wide(after.of("modification")) == term(model.modification),
     )
     yield "the events that are left are the model's", wide(after.of("updates")) == term(model.left)
-    yield from _position(way, _NO_STEP)
+    yield from position(way, NO_STEP)
     yield "the next interval is that of the new speed", way.next_is_chosen
     if not stopped:
-        later = after.to_event - before.to_event
-        yield "the next event comes one interval after this one", later == term(model.due_at)
+        later = before.of("eventAt") + z3.Extract(31, 0, term(model.due_at))
+        yield "the next event comes one interval after this one", after.of("eventAt") == later
     if after.has("next", "select"):
         waits = after.of("next", "select") != 0
         yield "what the next step sets is not put off", z3.Implies(waits, after.count == 1)
@@ -184,47 +145,51 @@ def boundary(way: Way) -> Iterator[tuple[str, Any]]:
     Yield what must hold after the rare ways of a step interrupt.
     """
     before, after = way.before, way.after
-    itself = way.machine.called.count(f"{before.motor}Step")
+    itself = way.machine.calls.count(f"{before.motor}Step")
     by_assembly = z3.And(before.entered_count == 0, z3.Not(before.is_in(THINK)))
-    yield from _position(way, itself + z3.If(by_assembly, _NO_STEP + 1, _NO_STEP))
+    yield from position(way, itself + z3.If(by_assembly, NO_STEP + 1, NO_STEP))
     if before.has("eventAt"):
         yield from _wakes(way)
         return
     running, limited = before.is_in(RUNNING), before.is_in(THINK)
     ended = z3.Not(after.is_in(RUNNING))
     until = before.to_millis_end
-    yield "a time limit ends when it has passed", z3.Implies(
-        z3.And(running, limited), ended == (until <= 0)
+    yield (
+        "a time limit ends when it has passed",
+        z3.Implies(z3.And(running, limited), ended == (until <= 0)),
     )
-    yield "what is left of it stays", z3.Implies(
-        z3.And(running, limited, z3.Not(ended)), after.to_millis_end == until
+    yield (
+        "what is left of it stays",
+        z3.Implies(z3.And(running, limited, z3.Not(ended)), after.to_millis_end == until),
     )
 
 
 def _wakes(way: Way) -> Iterator[tuple[str, Any]]:
     before, after = way.before, way.after
     looks = z3.And(after.is_in(RUNNING), after.is_in(CLOCKED))
-    ahead = wide(after.of("wake") - _low(after))
-    yield "the interrupt wakes up within the range of its comparison", z3.Implies(looks, ahead <= _FAR)
-    yield "it wakes up before a time limit ends", z3.Implies(
-        z3.And(looks, after.is_in(LIMITED)), ahead <= millis_left(before)
+    ahead = wide(after.of("wake") - low_millis(after))
+    yield (
+        "the interrupt wakes up within the range of its comparison",
+        z3.Implies(looks, ahead <= _FAR),
+    )
+    yield (
+        "it wakes up before a time limit ends",
+        z3.Implies(
+            z3.And(looks, after.is_in(LIMITED)),
+            z3.Or(ahead == 0, ahead <= millis_left(before)),
+        ),
     )
     control = before.of("control")
     timed = z3.And(control & IRQ_TIMING != 0, control & UPDATE_STEPS == 0)
     pending = z3.And(looks, timed, before.of("updates") != 0, before.to_event >= 0)
     yield "it wakes up before an update event", z3.Implies(pending, ahead <= before.to_event)
-    yield "a time limit ends when it has passed", z3.Implies(
-        z3.And(before.is_in(RUNNING), before.is_in(LIMITED), before.entered_count != 0),
-        after.is_in(RUNNING) == (millis_left(before) > 0),
+    yield (
+        "a time limit ends when it has passed",
+        z3.Implies(
+            z3.And(before.is_in(RUNNING), before.is_in(LIMITED), before.entered_count != 0),
+            after.is_in(RUNNING) == (millis_left(before) > 0),
+        ),
     )
-
-
-def millis_left(state: State) -> Any:  # noqa: ANN401 - z3 has no types
-    """
-    Return the milliseconds until the limit of a variable motion, 0 or less after it.
-    """
-    elapsed = wide(state.values[CLOCK] - state.of("start"))  # the model's: modulo 2**32
-    return wide(state.of("limit")) - elapsed
 
 
 def millis_left_function(way: Way) -> Iterator[tuple[str, Any]]:
@@ -258,7 +223,7 @@ def read_position(way: Way) -> Iterator[tuple[str, Any]]:
     Yield what must hold of the result of ``...ReadPosition``.
     """
     yield "the position", way.result == way.before.position
-    yield from _position(way, _NO_STEP)
+    yield from position(way, NO_STEP)
 
 
 def read_status(way: Way) -> Iterator[tuple[str, Any]]:
@@ -271,36 +236,18 @@ def read_status(way: Way) -> Iterator[tuple[str, Any]]:
     else:
         over = z3.And(before.is_in(RUNNING), before.is_in(THINK), before.to_millis_end <= 0)
     reached = before.of("status") & _REACHED != 0
-    yield "REACHED at the end of a time limit", z3.Implies(
-        before.is_in(RUNNING), (way.result & _REACHED != 0) == z3.Or(reached, over)
+    yield (
+        "REACHED at the end of a time limit",
+        z3.Implies(before.is_in(RUNNING), (way.result & _REACHED != 0) == z3.Or(reached, over)),
     )
-    yield from _position(way, _NO_STEP)
+    yield from position(way, NO_STEP)
 
 
 def keeps_position(way: Way) -> Iterator[tuple[str, Any]]:
     """
     Yield what must hold of a call that makes no step.
     """
-    yield from _position(way, _NO_STEP)
-
-
-def _position(way: Way, made: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
-    before, after = way.before, way.after
-    goes = z3.If(before.is_in(REVERSE), -made, made)
-    yield "the position changes by the steps that are made", after.position == before.position + goes
-    fits = z3.And(before.steps_counted, after.steps_counted)
-    yield "what is left is as much less", z3.Implies(fits, after.left == before.left - wide(made))
-
-
-def _same_but_status(way: Way) -> Any:  # noqa: ANN401
-    own = f"{way.before.motor}Motion"
-    places = [place for place in way.before.values if place[0] == own and place[1] != "status"]
-    same = [way.after.values[place] == way.before.values[place] for place in places]
-    return z3.And(*same, way.after.count == way.before.count)
-
-
-def _low(state: State) -> Any:  # noqa: ANN401
-    return z3.Extract(15, 0, state.values[CLOCK])
+    yield from position(way, NO_STEP)
 
 
 CLAIMS: dict[str, Callable[[Way], Iterator[tuple[str, Any]]]] = {

@@ -4,54 +4,36 @@ Executes the intermediate form with unknown values and checks each operation.
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
 
 import z3
 
-from stepgen.verify.proof.gimple import Function, Statement
+from stepgen.verify.proof.gimple import Function
 from stepgen.verify.proof.integers import BOOL, I16, U16, U32, Integer, converted, integer, keeps
 from stepgen.verify.proof.meant import is_meant
-from stepgen.verify.proof.memory import CLOCK, GENERAL_PURPOSE, Memory, Place
+from stepgen.verify.proof.memory import CLOCK, Place
+from stepgen.verify.proof.operands import (
+    CALL,
+    CAST,
+    NUMBER,
+    Frame,
+    Operands,
+    Pointer,
+    is_pointer,
+    scalar,
+)
 from stepgen.verify.proof.operations import COMPARISONS, operation
 from stepgen.verify.proof.paths import Paths
 from stepgen.verify.proof.source import Source
 
-_NUMBER = re.compile(r"-?\d+$")
-_ADDRESS = re.compile(r"(\d+)B$")
-_CALL = re.compile(r"([\w:~<>]+) \((.*)\)$")
-_CAST = re.compile(r"\(([\w ]+)\) (\S+)$")
 _EXTREME = re.compile(r"(MAX|MIN)_EXPR <(\S+), (\S+)>$")
 _GOTO = re.compile(r"goto <bb (\d+)>$")
 _IF = re.compile(r"if \((.*)\) goto <bb (\d+)>; else goto <bb (\d+)>$")
-_ELEMENT = re.compile(r"&?(\w+)\[(\S+)\]$")
 _LOAD = re.compile(r'__asm__ __volatile__\("lpm .*?" : "=r" (\w+).*"z?1?" (\w+)\)', re.DOTALL)
 
 
-@dataclass(frozen=True)
-class Pointer:
-    """
-    Where a pointer points: a variable, a register, or an element of a table.
-    """
-
-    place: Place
-    element: Any = None
-
-
-@dataclass
-class Frame:
-    """
-    One call of a function: its local variables, and the structures among them in memory.
-    """
-
-    function: Function
-    place: Place
-    values: dict[str, Any] = field(default_factory=dict)
-    line: int = 0
-
-
-class Machine:
+class Machine(Operands):
     """
     A library whose functions can be called; its variables are unknown at first.
 
@@ -62,28 +44,26 @@ class Machine:
     """
 
     def __init__(self, source: Source, functions: dict[str, Function], paths: Paths) -> None:
-        self.memory = Memory(source)
+        super().__init__(source)
         self.written: list[tuple[str, Any]] = []
-        self.called: list[str] = []
+        self.calls: list[str] = []
         self.used: set[str] = set()
         self.known: dict[str, Callable[[Any], dict[Place, Any]]] = {}
-        self.masked: Callable[[], None] = lambda: None
-        self.unmasked: Callable[[], None] = lambda: None
-        self._source = source
+        self.masked: Callable[[], object] = lambda: None
+        self.unmasked: Callable[[], object] = lambda: None
         self._functions = functions
         self._paths = paths
         self._frames = count()
-        self._reads = count()
 
     def call(self, name: str, *arguments: Any) -> Any:  # noqa: ANN401 - z3 has no types
         """
         Call the function *name*, and return what it returns.
         """
-        self.called.append(name)
+        self.calls.append(name)
         function = self._functions[name]
         frame = Frame(function, (f"{name}#{next(self._frames)}",))
         for local, kind in function.types.items():
-            if _scalar(kind) is None and not _is_pointer(kind):
+            if scalar(kind) is None and not is_pointer(kind):
                 self.memory.declare((*frame.place, local), kind)
         frame.values.update(zip(function.parameters, arguments, strict=True))
         return self._run(frame)
@@ -105,10 +85,10 @@ class Machine:
             block = following or frame.function.after(block)
 
     def _returned(self, text: str, frame: Frame) -> Any:  # noqa: ANN401
-        place = self._place(text, frame)
+        place = self.place(text, frame)
         if isinstance(place, Pointer) and self.memory.type_at(place.place) is None:
             return self._parts(place.place)
-        return self._value(text, frame, I16)
+        return self.value(text, frame, I16)
 
     def _parts(self, place: Place) -> dict[Place, Any]:
         return {part: self.memory.read((*place, *part)) for part in self.memory.within(place)}
@@ -126,7 +106,7 @@ class Machine:
         if text.startswith("__asm__"):
             self._assembly(text, frame)
         elif not equals:
-            self._called(text, frame)
+            self.called(text, frame)
         elif right != "{CLOBBER}":
             self._assign(left, right, frame)
 
@@ -147,13 +127,16 @@ class Machine:
             value = z3.If(index == number, z3.BitVecVal(entry, bits), value)
         return value
 
-    def _called(self, text: str, frame: Frame) -> Any:  # noqa: ANN401
-        found = _CALL.match(text)
+    def called(self, text: str, frame: Frame) -> Any:  # noqa: ANN401
+        """
+        Execute the call *text* and return its result.
+        """
+        found = CALL.match(text)
         if found is None:
             raise ValueError(f"line {frame.line}: {text}")
         name, arguments = found[1], [part for part in found[2].split(", ") if part]
         if name.startswith("near<"):
-            return self._pointer(arguments[0], frame)
+            return self.pointer(arguments[0], frame)
         if name.startswith("Masked::"):
             (self.unmasked if "~" in name else self.masked)()
             return None
@@ -164,9 +147,9 @@ class Machine:
         function = self._functions[name]
         wanted = [function.types[parameter] for parameter in function.parameters]
         values = [
-            self._pointer(part, frame)
-            if _is_pointer(kind)
-            else self._value(part, frame, integer(kind) or U16)
+            self.pointer(part, frame)
+            if is_pointer(kind)
+            else self.value(part, frame, integer(kind) or U16)
             for part, kind in zip(arguments, wanted, strict=True)
         ]
         if name in self.known:
@@ -175,29 +158,32 @@ class Machine:
 
     def _assign(self, left: str, right: str, frame: Frame) -> None:
         kind = frame.function.types.get(left, "")
-        if _is_pointer(kind) or isinstance(self._loaded_address(right, frame), Pointer):
-            frame.values[left] = self._pointer(right, frame)
+        if is_pointer(kind) or isinstance(self._loaded_address(right, frame), Pointer):
+            frame.values[left] = self.pointer(right, frame)
             return
-        place = self._place(left, frame)
-        wanted = self._type(left, frame)
+        wanted = self.type_of(left, frame)
         if wanted is None:
-            assert isinstance(place, Pointer)
-            parts = self._called(right, frame) if _CALL.match(right) else None
-            if parts is None:
-                source = self._place(right, frame)
-                assert isinstance(source, Pointer)
-                parts = self._parts(source.place)
-            for part, value in parts.items():
-                self.memory.write((*place.place, *part), value)
+            self._copy(self.variable(left, frame).place, right, frame)
             return
         self._store(left, self._right(right, frame, wanted), frame)
 
+    def _copy(self, place: Place, right: str, frame: Frame) -> None:
+        """
+        Put the structure *right* at *place*.
+        """
+        if CALL.match(right):
+            parts = self.called(right, frame)
+        else:
+            parts = self._parts(self.variable(right, frame).place)
+        for part, value in parts.items():
+            self.memory.write((*place, *part), value)
+
     def _loaded_address(self, right: str, frame: Frame) -> Any:  # noqa: ANN401
-        found = _CAST.match(right)
+        found = CAST.match(right)
         return frame.values.get(found[2]) if found else None
 
     def _store(self, left: str, value: Any, frame: Frame) -> None:  # noqa: ANN401
-        place = self._place(left, frame)
+        place = self.place(left, frame)
         if place is None:
             frame.values[left] = value
         elif place.place[0] == "register":
@@ -205,55 +191,59 @@ class Machine:
         else:
             self.memory.write(place.place, value)
 
-    def _right(self, text: str, frame: Frame, wanted: Integer) -> Any:  # noqa: ANN401
+    def _right(  # noqa: PLR0911 - one for each form of a right side
+        self, text: str, frame: Frame, wanted: Integer
+    ) -> Any:  # noqa: ANN401
         """
         Return what stands on the right of an assignment to something of the type *wanted*.
         """
-        if found := _CAST.match(text):
+        if found := CAST.match(text):
             return self._cast(found[2], frame, wanted)
         if found := _EXTREME.match(text):
-            one, other = (self._value(part, frame, wanted) for part in found.groups()[1:])
+            one, other = (self.value(part, frame, wanted) for part in found.groups()[1:])
             first = one >= other if wanted.signed else z3.UGE(one, other)
             return z3.If(first if found[1] == "MAX" else z3.Not(first), one, other)
         parts = text.split(" ")
-        if len(parts) == 3 and not _CALL.match(text):  # noqa: PLR2004 - a, operator, b
+        if len(parts) == 3 and not CALL.match(text):  # noqa: PLR2004 - a, operator, b
             return self._binary(parts[0], parts[1], parts[2], frame, wanted)
-        if _CALL.match(text):
-            return self._called(text, frame)
+        if CALL.match(text):
+            return self.called(text, frame)
         if text[0] == "~":
-            return ~self._value(text[1:], frame, wanted)
-        if text[0] == "-" and not _NUMBER.match(text):
+            return ~self.value(text[1:], frame, wanted)
+        if text[0] == "-" and not NUMBER.match(text):
             return self._binary("0", "-", text[1:], frame, wanted)
-        return self._value(text, frame, wanted)
+        return self.value(text, frame, wanted)
 
     def _cast(self, text: str, frame: Frame, wanted: Integer) -> Any:  # noqa: ANN401
-        given = self._type(text, frame)
-        assert given is not None
-        value = self._value(text, frame, given)
+        given = self.type_of(text, frame) or wanted
+        value = self.value(text, frame, given)
         # As signed char the compiler combines bits; it means no numbers by it.
         bits_only = given.bits == wanted.bits == 8  # noqa: PLR2004
         if not bits_only:
             self._prove(keeps(value, given, wanted), "a conversion that keeps the value", frame)
         return converted(value, given, wanted)
 
-    def _binary(  # noqa: PLR0913 - an operation has that many parts
-        self, one: str, sign: str, other: str, frame: Frame, wanted: Integer
-    ) -> Any:  # noqa: ANN401
-        kind = self._type(one, frame) or self._type(other, frame) or wanted
+    def _binary(self, one: str, sign: str, other: str, frame: Frame, wanted: Integer) -> Any:  # noqa: ANN401
+        kind = self.type_of(one, frame) or self.type_of(other, frame) or wanted
         if sign in {"<<", ">>"}:
-            kind = self._type(one, frame) or wanted
-            amount = self._value(other, frame, I16)
+            kind = self.type_of(one, frame) or wanted
+            amount = self.value(other, frame, I16)
             by = converted(amount, Integer(amount.size()), kind)
             self._prove(z3.ULT(amount, kind.bits), "a shift by less than the width", frame)
-            return self._checked(sign, self._value(one, frame, kind), by, kind, frame)
+            return self._checked(sign, self.value(one, frame, kind), by, kind, frame)
         if sign in COMPARISONS and not kind:
             kind = U16
         return self._checked(
-            sign, self._value(one, frame, kind), self._value(other, frame, kind), kind, frame
+            sign, self.value(one, frame, kind), self.value(other, frame, kind), kind, frame
         )
 
-    def _checked(  # noqa: PLR0913
-        self, sign: str, one: Any, other: Any, kind: Integer, frame: Frame  # noqa: ANN401
+    def _checked(
+        self,
+        sign: str,
+        one: Any,  # noqa: ANN401
+        other: Any,  # noqa: ANN401
+        kind: Integer,
+        frame: Frame,
     ) -> Any:  # noqa: ANN401
         negative = sign == "+" and self._subtracts(other, kind, frame)
         if negative:
@@ -279,77 +269,3 @@ class Machine:
         if is_meant(text, self._source.motors, self.used):
             return
         self._paths.prove(claim, says, f"{frame.function.name}, line {frame.line}: {text}")
-
-    def _type(self, text: str, frame: Frame) -> Integer | None:
-        if text in frame.function.types:
-            return _scalar(frame.function.types[text])
-        place = self._place(text, frame)
-        if place is None:
-            return None
-        if place.place[0] == "register":
-            return _scalar(frame.function.types[text[1:]].rstrip(" *"))
-        return self.memory.type_at(place.place)
-
-    def _value(self, text: str, frame: Frame, wanted: Integer) -> Any:  # noqa: ANN401
-        if _NUMBER.match(text):
-            return z3.BitVecVal(int(text), wanted.bits)
-        if text == "0B":
-            return z3.BitVecVal(0, wanted.bits)
-        place = self._place(text, frame)
-        if place is None:
-            return frame.values[text]
-        if place.place[0] == "register":
-            kind = self._type(text, frame)
-            assert kind is not None
-            return z3.BitVec(f"register {place.place[1]}, read {next(self._reads)}", kind.bits)
-        return self.memory.read(place.place)
-
-    def _pointer(self, text: str, frame: Frame) -> Pointer:
-        if found := _ADDRESS.match(text):
-            address = int(found[1])
-            name = GENERAL_PURPOSE.get(address)
-            return Pointer((name,) if name else ("register", f"0x{address:02X}"))
-        if found := _CAST.match(text):
-            return self._pointer(found[2], frame)
-        if found := _ELEMENT.match(text):
-            return Pointer((found[1],), self._value(found[2], frame, U16))
-        if " + " in text:
-            base, _, offset = text.partition(" + ")
-            pointer, more = self._pointer(base, frame), self._value(offset, frame, U16)
-            at = more if pointer.element is None else pointer.element + more
-            return Pointer(pointer.place, at)
-        if _CALL.match(text):
-            return self._called(text, frame)
-        if text in frame.values:
-            return frame.values[text]
-        if text.startswith("&") and text[1:] in self._source.tables:
-            return Pointer((text[1:],))
-        place = self._place(text.removeprefix("&"), frame)
-        assert place is not None
-        return place
-
-    def _place(self, text: str, frame: Frame) -> Pointer | None:
-        """
-        Return where *text* is; None if it is an integer among the local variables.
-        """
-        if text.startswith("*"):
-            return frame.values[text[1:]]
-        base, arrow, fields = text.partition("->")
-        if arrow:
-            return Pointer((*frame.values[base].place, *fields.split(".")))
-        parts = text.split(".")
-        for size in range(len(parts), 0, -1):
-            name = ".".join(parts[:size])
-            if name in frame.function.types:
-                local = (*frame.place, name, *parts[size:])
-                known = parts[size:] or any(True for _ in self.memory.within(local))
-                return Pointer(local) if known else None
-        return Pointer(tuple(parts))
-
-
-def _is_pointer(kind: str) -> bool:
-    return kind.endswith(("*", "&"))
-
-
-def _scalar(kind: str) -> Integer | None:
-    return U16 if "(*" in kind else integer(kind)

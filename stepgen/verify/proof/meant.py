@@ -33,7 +33,7 @@ MEANT = {
     "motion.rest = motion.restHigh = -1;": "with the one that is counted down, no step is left",
     # Times.
     "const uint32_t gone = timer0_millis - motion.start;": _TIMES,
-    "const int32_t left = motion.eventAt - motorEventClock();": _TIMES,
+    "const int32_t left = near(motorMotion).eventAt - motorEventClock();": _TIMES,
     "motion.eventAt = count + motion.interval;": _TIMES,
     "motion.wake = motion.start;": _TIMES,
     "motion.wake = millisNow() + wait;": _TIMES,
@@ -54,7 +54,7 @@ def is_meant(text: str, motors: tuple[str, ...], used: set[str]) -> bool:
     """
     line = text
     for motor in motors:
-        for after in ("Position", "Show", "EventClock", "Count"):
+        for after in ("Position", "Show", "EventClock", "Count", "Motion"):
             line = line.replace(f"{motor}{after}", f"motor{after}")
     if line not in MEANT:
         return False

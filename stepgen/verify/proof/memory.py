@@ -1,5 +1,5 @@
 """
-The variables of a library: bit vectors by where they are, such as ``("motorMotion", "next", "top")``.
+The variables of a library: bit vectors by place, such as ``("motorMotion", "next", "top")``.
 """
 
 from collections.abc import Iterator
@@ -39,7 +39,9 @@ class Memory:
         if scalar is not None:
             self._types[place] = scalar
             return
-        for name, inner in self._structs[kind.removeprefix("const ").removeprefix("struct ")].items():
+        for name, inner in self._structs[
+            kind.removeprefix("const ").removeprefix("struct ")
+        ].items():
             self.declare((*place, name), inner)
 
     def type_at(self, place: Place) -> Integer | None:

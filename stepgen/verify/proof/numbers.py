@@ -62,13 +62,10 @@ class Number:
         return self._new(self.value >> term(other))
 
     def __floordiv__(self, other: int) -> Self:
-        # The model divides what is not negative, and by powers of two.
-        assert other.bit_count() == 1
-        return self._new(z3.LShR(self.value, other.bit_length() - 1))
+        return self._new(z3.LShR(self.value, _power_of_two(other)))
 
     def __mod__(self, other: int) -> Self:
-        assert other.bit_count() == 1
-        return self._new(self.value & (other - 1))
+        return self._new(self.value & ((1 << _power_of_two(other)) - 1))
 
     def __lt__(self, other: object) -> bool:
         return self._paths.decide(self.value < term(other))
@@ -97,5 +94,15 @@ def term(number: object) -> Any:  # noqa: ANN401
     """
     if isinstance(number, Number):
         return number.value
-    assert isinstance(number, int)
+    if not isinstance(number, int):
+        raise TypeError(f"{number} is no whole number")
     return z3.BitVecVal(int(number), BITS)
+
+
+def _power_of_two(number: int) -> int:
+    """
+    Return the exponent: the model divides what is not negative, and by powers of two.
+    """
+    if number.bit_count() != 1:
+        raise ValueError(f"{number} is no power of two")
+    return number.bit_length() - 1

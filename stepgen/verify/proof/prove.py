@@ -9,13 +9,14 @@ from typing import Any
 
 import z3
 
-from stepgen.verify.proof.claims import CLAIMS, Way, choice
+from stepgen.verify.proof.claims import CLAIMS, choice
 from stepgen.verify.proof.integers import U16, integer
 from stepgen.verify.proof.library import Chosen, Library
 from stepgen.verify.proof.machine import Machine
 from stepgen.verify.proof.memory import GENERAL_PURPOSE
 from stepgen.verify.proof.paths import Paths, Violation
 from stepgen.verify.proof.state import CLOCKED, COAST, RUNNING, State, assumed, invariant
+from stepgen.verify.proof.way import Way
 
 _PENDING = ("Update", "UntilEvent")  # only called while events are left
 
@@ -136,9 +137,7 @@ class _Run:
             self.paths.assume(self._before.to_event <= 0)
         result = machine.call(self.name, *arguments)
         after = self._keeps()
-        way = Way(
-            self.library, self.paths, machine, chosen, self._before, after, arguments, result
-        )
+        way = Way(self.library, self.paths, machine, chosen, self._before, after, arguments, result)
         for says, claim in CLAIMS[kind](way):
             self._show(says, claim)
 
@@ -163,7 +162,7 @@ class _Run:
 
     def _from_reset(self) -> None:
         """
-        Show that the invariant holds after reset, where RAM is 0; of the registers nothing is known.
+        Show that the invariant holds after reset, where RAM is 0; of registers nothing is known.
         """
         before, registers = self._before, set(GENERAL_PURPOSE.values())
         zeros = {place: value & 0 for place, value in before.values.items()}

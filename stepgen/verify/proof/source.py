@@ -10,7 +10,9 @@ _COMMENT = re.compile(r"//.*$", re.MULTILINE)
 _STRUCT = re.compile(r"^struct (\w+) \{\n(.*?)^\};", re.MULTILINE | re.DOTALL)
 _FIELD = re.compile(r"^  (\w+) (\w+);", re.MULTILINE)
 _CALLBACK = re.compile(r"^  void \(\*(\w+)\)\(\);", re.MULTILINE)
-_TABLE = re.compile(r"^static const (\w+) (\w+)\[\] PROGMEM.*?= \{(.*?)\};", re.MULTILINE | re.DOTALL)
+_TABLE = re.compile(
+    r"^static const (\w+) (\w+)\[\] PROGMEM.*?= \{(.*?)\};", re.MULTILINE | re.DOTALL
+)
 _VARIABLE = re.compile(r"^static (\w+) (\w+);", re.MULTILINE)
 _MOTOR = re.compile(r"^int8_t (\w+)SetSpeed\($", re.MULTILINE)
 _ENDS = ";{}:"
@@ -79,6 +81,5 @@ def read_source(path: Path) -> Source:
 
 
 def _fields(body: str) -> dict[str, str]:
-    return {name: kind for kind, name in _FIELD.findall(body)} | {
-        name: "uint16_t" for name in _CALLBACK.findall(body)
-    }
+    fields = {name: kind for kind, name in _FIELD.findall(body)}
+    return fields | dict.fromkeys(_CALLBACK.findall(body), "uint16_t")

@@ -107,6 +107,13 @@ class State:
         return z3.And(self.is_in(RUNNING), z3.Not(self.is_in(ENDLESS)))
 
     @property
+    def may_coast(self) -> bool:
+        """
+        Tell whether the motor keeps its coils on for an interval after its last step.
+        """
+        return any(f"{self.motor}Reached(kThink | kCoast" in line for line in self.source.lines)
+
+    @property
     def to_millis_end(self) -> Any:  # noqa: ANN401
         """
         Return the milliseconds until the limit at constant speed: to endMillis, and laps.
@@ -139,7 +146,7 @@ def invariant(state: State) -> Claims:
             state.steps_counted, state.left < 1 << 32
         ),
     }
-    claims |= _of_ring(state)
+    claims |= _of_ring(state) | _of_coasting(state)
     claims |= _of_fast_pwm(state) if state.has("next", "top") else _of_compare(state)
     return claims | (_of_events(state) if state.has("eventAt") else _of_constant(state))
 
@@ -161,6 +168,13 @@ def assumed(state: State) -> Claims:
 
 def _coasts(state: State) -> Any:  # noqa: ANN401
     return state.is_in(COAST)
+
+
+def _of_coasting(state: State) -> Claims:
+    if not state.may_coast:
+        return {"the motor never coasts": z3.Not(_coasts(state))}
+    thinks = z3.And(z3.Not(state.is_in(RUNNING)), state.is_in(THINK))
+    return {"a motor that coasts thinks, and runs no more": z3.Implies(_coasts(state), thinks)}
 
 
 def _of_ring(state: State) -> Claims:
@@ -199,9 +213,11 @@ def _of_fast_pwm(state: State) -> Claims:
 def _of_compare(state: State) -> Claims:
     running = z3.Or(state.is_in(RUNNING), _coasts(state))
     fits = z3.And(z3.ULE(state.of("next", "lapsHigh"), 127), z3.UGE(state.of("next", "first"), 128))
-    return {"laps are counted down to below 0, and matches are 128 ticks apart": z3.Implies(
-        running, fits
-    )}
+    return {
+        "laps are counted down to below 0, and matches are 128 ticks apart": z3.Implies(
+            running, fits
+        )
+    }
 
 
 def _of_constant(state: State) -> Claims:
@@ -214,8 +230,6 @@ def _of_constant(state: State) -> Claims:
         "a limit in milliseconds has none in steps": z3.Implies(
             z3.And(running, thinks), state.is_in(ENDLESS)
         ),
-        "a motor that coasts does not run": z3.Not(z3.And(running, _coasts(state))),
-        "it thinks first": z3.Implies(_coasts(state), thinks),
     }
 
 
@@ -231,7 +245,6 @@ def _of_events(state: State) -> Claims:
         "the next update event is at most an interval away": z3.Implies(
             pending, state.to_event <= wide(state.of("interval"))
         ),
-        "a motor that coasts does not run": z3.Not(z3.And(running, _coasts(state))),
         "only a motor that coasts thinks first": state.is_in(THINK) == state.is_in(COAST),
         "a limit in milliseconds has none in steps": z3.Implies(
             z3.And(running, state.is_in(LIMITED)), state.is_in(ENDLESS)
