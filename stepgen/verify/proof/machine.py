@@ -48,7 +48,7 @@ class Machine(Operands):
         self.written: list[tuple[str, Any]] = []
         self.calls: list[str] = []
         self.used: set[str] = set()
-        self.known: dict[str, Callable[[Any], dict[Place, Any]]] = {}
+        self.known: dict[str, Callable[..., Any]] = {}
         self.masked: Callable[[], object] = lambda: None
         self.unmasked: Callable[[], object] = lambda: None
         self._functions = functions

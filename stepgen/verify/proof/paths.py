@@ -53,6 +53,13 @@ class Paths:
             self._prove()
             yield
 
+    @property
+    def taken(self) -> tuple[bool, ...]:
+        """
+        Return what was decided on this way so far.
+        """
+        return tuple(self._taken)
+
     def assume(self, condition: Any) -> None:  # noqa: ANN401 - z3 has no types
         """
         Take *condition* for granted from here on.

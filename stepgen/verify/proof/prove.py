@@ -13,7 +13,7 @@ from stepgen.verify.proof.claims import CLAIMS, choice
 from stepgen.verify.proof.integers import U16, integer
 from stepgen.verify.proof.library import Chosen, Library
 from stepgen.verify.proof.machine import Machine
-from stepgen.verify.proof.memory import GENERAL_PURPOSE
+from stepgen.verify.proof.memory import GENERAL_PURPOSE, Place
 from stepgen.verify.proof.paths import Paths, Violation
 from stepgen.verify.proof.state import CLOCKED, COAST, RUNNING, State, assumed, invariant
 from stepgen.verify.proof.way import Way
@@ -30,7 +30,7 @@ class Proof:
         function: Its name.
         ways: The ways through it.
         proven: The claims that were proven on them, those of single operations included.
-        seconds: How long it took.
+        seconds: CPU time.
         violations: The claims that do not hold.
         meant: The lines that lost bits and may.
     """
@@ -71,12 +71,18 @@ def shared(library: Library) -> list[str]:
 
 def _prove(library: Library, name: str, motor: str) -> Proof:
     proof, paths = Proof(name), Paths()
-    started = time.monotonic()
+    started = time.process_time()
     run = _Run(library, name, motor, paths, proof.meant)
     proof.ways = sum(1 for _ in paths.runs(run.once))
-    proof.seconds = time.monotonic() - started
+    proof.seconds = time.process_time() - started
     proof.proven, proof.violations = paths.proven, paths.violations
     return proof
+
+
+class _KnownFromHereError(Exception):
+    """
+    What follows was proven on another way.
+    """
 
 
 @dataclass
@@ -86,6 +92,7 @@ class _Run:
     motor: str
     paths: Paths
     meant: set[str]
+    _onward: tuple[bool, ...] | None = None
 
     def once(self) -> None:
         """
@@ -122,6 +129,8 @@ class _Run:
         chosen = Chosen(self.library, self.paths)
         machine.known = {self.library.choose: chosen}
         machine.masked, machine.unmasked = self._masked, self._keeps
+        if kind != "Update":
+            machine.known[f"{self.motor}Update"] = self._updated
         self._sections = 0
         self._before = self._state()
         if kind == "boundary":
@@ -135,7 +144,10 @@ class _Run:
             self.paths.assume(pending)
         if kind == "Update":
             self.paths.assume(self._before.to_event <= 0)
-        result = machine.call(self.name, *arguments)
+        try:
+            result = machine.call(self.name, *arguments)
+        except _KnownFromHereError:
+            return
         after = self._keeps()
         way = Way(self.library, self.paths, machine, chosen, self._before, after, arguments, result)
         for says, claim in CLAIMS[kind](way):
@@ -174,12 +186,39 @@ class _Run:
         }
         self._assume(replace(before, values=others))
 
+    def _updated(self) -> None:
+        """
+        Stand for ``...Update``, proven by itself: show what it needs, assume what it keeps.
+        """
+        before, memory = self._state(), self._machine.memory
+        needs = z3.And(before.is_in(RUNNING), before.of("updates") != 0, before.to_event <= 0)
+        self._show("an update event is due when it is applied", needs)
+        self._keeps()
+        own = f"{self.motor}Motion"
+        changed: set[Place] = {
+            (own, name) for name in ("eventAt", "top", "modification", "updates", "rest")
+        }
+        changed |= {place for place in before.values if place[:2] == (own, "next")}
+        changed |= {(own, "status"), before.count_place}
+        for place in sorted(changed):
+            memory.write(place, z3.BitVec(f"{place} after the event", before.values[place].size()))
+        after = self._state()
+        for claim in invariant(after).values():
+            self.paths.assume(claim)
+        self.paths.assume(after.position == before.position)
+        self.paths.assume(z3.Implies(before.steps_counted, after.left == before.left))
+
     def _masked(self) -> None:
         """
         Let anything have happened before interrupts are off for a second time.
+
+        Since all is unknown then, one way up to there is followed further, and no other.
         """
         self._sections += 1
         if self._sections > 1:
+            self._onward = self._onward or self.paths.taken
+            if self.paths.taken[: len(self._onward)] != self._onward:
+                raise _KnownFromHereError
             self._machine.memory.forget(f"in section {self._sections}")
             self._before = self._state()
             self._assume(self._before)
