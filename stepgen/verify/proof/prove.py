@@ -195,9 +195,8 @@ class _Run:
         self._show("an update event is due when it is applied", needs)
         self._keeps()
         own = f"{self.motor}Motion"
-        changed: set[Place] = {
-            (own, name) for name in ("eventAt", "top", "modification", "updates", "rest")
-        }
+        fields = ("eventAt", "top", "modification", "updates", "rest")
+        changed: set[Place] = {(own, name) for name in fields}
         changed |= {place for place in before.values if place[:2] == (own, "next")}
         changed |= {(own, "status"), before.count_place}
         for place in sorted(changed):
