@@ -10,6 +10,7 @@ _ENDLESS = "without an end point what is left counts modulo 2**32; else it fits,
 _TIMES = "a difference of two times, or a time a while ahead, of a clock that wraps"
 _LOW_BYTES = "the lower bits are what is wanted"
 _PARTS = "the parts make up the whole, which is proven of the interval or of what is left"
+_LAPS = "0 laps stand for 256, and without kLaps none is counted; that they make up the limit is proven"
 
 MEANT = {
     # Positions and what is left.
@@ -39,7 +40,10 @@ MEANT = {
     "motion.wake = millisNow() + wait;": _TIMES,
     "motion.endMillis = millisCount() + wait;": _TIMES,
     "motion.endMillis += 0x4000;": _TIMES,
-    "if (static_cast<int16_t>(millisCount() - motion.endMillis) < 0) return false;": _TIMES,
+    "return static_cast<int16_t>(millisCount() - motorMotion.endMillis) >= 0;": _TIMES,
+    "motion.laps = laps;": _LAPS,
+    "motion.lapsHigh = (laps - 1) >> 8;": _LAPS,
+    "if (--motion.laps) return;": _LAPS,
     "uint16_t wait = millis & 0x3FFF;": _LOW_BYTES,
     # Intervals of the timing compare.
     "const uint8_t rest = ticks;": _LOW_BYTES,

@@ -15,6 +15,9 @@ from stepgen.verify.proof.source import Source
 THINK, COAST, ENDLESS, REVERSE, RUNNING, CLOCKED, LIMITED = (1 << bit for bit in range(7))
 """The bits of ``mode``: kThink and so on."""
 
+LAPS = CLOCKED
+"""The bit kLaps of a motion at constant speed, which never looks at the clock by `CLOCKED`."""
+
 UPDATE_STEPS, IRQ_TIMING, SPEED_VARIABLE = 0x08, 0x10, 0x40
 
 # The least ticks of a period by clock select: 65536 / 8, 2**19 / 64, 2**22 / 256, 2**24 / 1024.
@@ -117,9 +120,13 @@ class State:
     def to_millis_end(self) -> Any:  # noqa: ANN401
         """
         Return the milliseconds until the limit at constant speed: to endMillis, and laps.
+
+        With kLaps those are laps + 256 * lapsHigh, where 0 laps stand for 256; else none.
         """
         until = self.of("endMillis") - z3.Extract(15, 0, self.values[CLOCK])
-        return wide_signed(until) + _LAP_MILLIS * wide(self.of("endLaps"))
+        laps, high = wide(self.of("laps")), wide(self.of("lapsHigh"))
+        more = z3.If(laps == 0, laps + 256, laps) + 256 * high
+        return wide_signed(until) + z3.If(self.is_in(LAPS), _LAP_MILLIS * more, 0)
 
     @property
     def to_event(self) -> Any:  # noqa: ANN401
@@ -202,7 +209,7 @@ def _of_fast_pwm(state: State) -> Claims:
         ),
     }
     if state.has("elapsed"):
-        late = z3.Implies(waits, z3.ULT(state.of("elapsed"), state.of("next", "top")))
+        late = z3.Implies(waits, wide(state.of("elapsed")) < wide(state.of("next", "top")))
         claims["the counter is set to less than TOP"] = late
         _, entries = state.source.tables[f"{state.motor}Elapsed"]
         known = z3.ULE(state.of("elapsed"), max(entries))
@@ -221,16 +228,18 @@ def _of_compare(state: State) -> Claims:
 
 
 def _of_constant(state: State) -> Claims:
-    run, thinks = state.of("run"), state.is_in(THINK)
-    running = state.is_in(RUNNING)
-    return {
-        "255 steps are counted down at a time, or 1": z3.Implies(
-            running, run == z3.If(thinks, z3.BitVecVal(1, 8), z3.BitVecVal(255, 8))
-        ),
-        "a limit in milliseconds has none in steps": z3.Implies(
-            z3.And(running, thinks), state.is_in(ENDLESS)
+    limited = z3.And(state.is_in(RUNNING), state.is_in(THINK))
+    claims = {
+        "a limit in milliseconds has none in steps": z3.Implies(limited, state.is_in(ENDLESS)),
+        "one step is counted down before the clock is looked at": z3.Implies(
+            limited, state.count == 1
         ),
     }
+    if state.has("next", "select"):
+        waits = z3.And(limited, state.of("next", "select") != 0)
+        first = z3.Implies(waits, state.of("rest") != 0)
+        claims["the first step of a limit in milliseconds takes no borrow"] = first
+    return claims
 
 
 def _of_events(state: State) -> Claims:
