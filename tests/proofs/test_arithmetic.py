@@ -91,6 +91,22 @@ MUTANTS = (
         "motorSetSpeed",
     ),
     Mutant(
+        "256 laps too many where their lower byte is 0",
+        "motions/constant.j2",
+        "motion.lapsHigh = (laps - 1) >> 8;",
+        "motion.lapsHigh = laps >> 8;",
+        "uno_servo_beside",
+        "motorSetSpeed",
+    ),
+    Mutant(
+        "a lap that is counted when none is over",
+        "motions/constant.j2",
+        "} else if (lapOver) {",
+        "} else {",
+        "mega_ramps_z",
+        "__vector_z_boundary",
+    ),
+    Mutant(
         "a change that is larger than what is left of the range",
         "motions/update_events.j2",
         "if (change > room) {",

@@ -142,9 +142,8 @@ class Machine(Operands):
             return None
         if name == "millisCount":
             return converted(self.memory.read(CLOCK), U32, U16)
-        if name == "__builtin_avr_delay_cycles":
-            return None
-        if name in frame.values:  # a callback: it comes last, and what it calls has its own proof
+        # A callback comes last, and what it calls has its own proof.
+        if name == "__builtin_avr_delay_cycles" or name in frame.values:
             return None
         function = self._functions[name]
         wanted = [function.types[parameter] for parameter in function.parameters]

@@ -10,7 +10,7 @@ _ENDLESS = "without an end point what is left counts modulo 2**32; else it fits,
 _TIMES = "a difference of two times, or a time a while ahead, of a clock that wraps"
 _LOW_BYTES = "the lower bits are what is wanted"
 _PARTS = "the parts make up the whole, which is proven of the interval or of what is left"
-_LAPS = "0 laps stand for 256, and without kLaps none is counted; that they make up the limit is proven"
+_LAPS = "0 laps stand for 256; without kLaps none is counted; that they make up the limit is proven"
 
 MEANT = {
     # Positions and what is left.

@@ -114,7 +114,8 @@ class State:
         """
         Tell whether the motor keeps its coils on for an interval after its last step.
         """
-        return any(f"{self.motor}Reached(kThink | kCoast" in line for line in self.source.lines)
+        reached = f"{self.motor}Reached("
+        return any(reached in line and "kThink | kCoast" in line for line in self.source.lines)
 
     @property
     def to_millis_end(self) -> Any:  # noqa: ANN401
