@@ -47,6 +47,16 @@ QUICK = (
         ),
     ),
     Quick("uno_servo_beside_variable", ("chooseInterval", "motorMillisLeft", "motorUntilEvent")),
+    Quick(
+        "mega_ramps_z",
+        (
+            "zReadStatus",
+            "__vector_z_boundary",
+            "zReadNanometres",
+            "zTimerCalcNanometresPerSecond",
+            "proofzStepsForMicrometres",
+        ),
+    ),
     Quick("uno_uln2003_28byj48", ("proofmotorStepsForTurns",)),
 )
 
@@ -134,7 +144,7 @@ def _prove(
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
     compiler = default_compiler().bin_dir / "avr-g++"
-    library = read_library(folder / "library", compiler, plan.board, folder)
+    library = read_library(folder / "library", compiler, plan, folder)
     return prove_library(library, functions)
 
 

@@ -3,6 +3,7 @@ What each function must do, beyond keeping the invariant: what the reference mod
 """
 
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from typing import Any
 
 import z3
@@ -39,6 +40,9 @@ from stepgen.verify.proof.way import (
 
 _REACHED = 0x10
 _FAR = 0x7FFF
+POSITION_READ = z3.BitVec("the position that is read", 32)
+"""Stands for the result of ``...ReadPosition``, which is proven by itself."""
+_EXACT = 32  # bits beyond 32 with which no product of metric units overflows
 
 
 def choice(library: Library, paths: Paths, period: Any, parts: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
@@ -243,6 +247,47 @@ def read_status(way: Way) -> Iterator[tuple[str, Any]]:
     yield from position(way, NO_STEP)
 
 
+def longest_way(per_mm: Fraction) -> int:
+    """
+    Return the micrometres up to which the steps of a way fit 32 bits.
+    """
+    return min(0xFFFF_FFFF, int(0xFFFF_FFFF * 1000 / per_mm))
+
+
+def steps_of(micrometres: Any, steps: Any, per_mm: Fraction) -> Any:  # noqa: ANN401
+    """
+    Tell whether *steps* are those of *micrometres*, rounded.
+    """
+    per_um = per_mm / 1000
+    way, made = (z3.ZeroExt(_EXACT, value) for value in (micrometres, steps))
+    off = 2 * (made * per_um.denominator - way * per_um.numerator)
+    return z3.And(off <= per_um.denominator, off >= -per_um.denominator)
+
+
+def read_nanometres(way: Way) -> Iterator[tuple[str, Any]]:
+    """
+    Yield what must hold of the result of ``...ReadNanometres``, as far as 32 bits go.
+    """
+    nanometres = 1_000_000 / way.library.steps_per_mm[way.before.motor]
+    at, read = (z3.SignExt(_EXACT, value) for value in (POSITION_READ, way.result))
+    exact = at * nanometres.numerator
+    off = exact - read * nanometres.denominator
+    end = nanometres.denominator << 31
+    cut_off = z3.If(at < 0, -off, off)
+    right = z3.And(cut_off >= 0, cut_off < nanometres.denominator)
+    inside = z3.And(exact < end, exact >= -end)
+    yield "the position in nanometres, cut off", z3.Implies(inside, right)
+    yield from position(way, NO_STEP)
+
+
+def read_missed(way: Way) -> Iterator[tuple[str, Any]]:
+    """
+    Yield what must hold of the result of ``...ReadMissed``.
+    """
+    yield "the steps that came too late", way.result == way.before.of("missed")
+    yield from position(way, NO_STEP)
+
+
 def keeps_position(way: Way) -> Iterator[tuple[str, Any]]:
     """
     Yield what must hold of a call that makes no step.
@@ -257,6 +302,8 @@ CLAIMS: dict[str, Callable[[Way], Iterator[tuple[str, Any]]]] = {
     "TimerUpdateCheck": keeps_position,
     "ReadStatus": read_status,
     "ReadPosition": read_position,
+    "ReadNanometres": read_nanometres,
+    "ReadMissed": read_missed,
     "Hold": keeps_position,
     "Release": keeps_position,
     "Update": update,

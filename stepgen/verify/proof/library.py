@@ -4,12 +4,13 @@ A generated library as the proof sees it, and what it may take of functions prov
 
 import re
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import z3
 
-from stepgen.devices import Board
+from stepgen.plan.model import Plan
 from stepgen.verify.proof.gimple import Function, functions
 from stepgen.verify.proof.memory import Place
 from stepgen.verify.proof.numbers import wide
@@ -17,7 +18,9 @@ from stepgen.verify.proof.paths import Paths
 from stepgen.verify.proof.source import Source, read_source
 
 _CONSTANT = re.compile(r"^constexpr \w+ (\w+) = (\w+?)U?L?;", re.MULTILINE)
-_TURNS = re.compile(r"^constexpr uint32_t (\w+)StepsForTurns\(", re.MULTILINE)
+_STEPS_FOR = re.compile(
+    r"^constexpr uint32_t (\w+StepsFor(?:Turns|Micrometres))\((\w+) \w+\)", re.MULTILINE
+)
 _CHOOSE = ("chooseSetting", "chooseInterval")
 
 PRESCALERS = {1: 1, 2: 8, 3: 64, 4: 256, 5: 1024}
@@ -31,18 +34,20 @@ class Library:
 
     Args:
         source: What it declares.
-        functions: The intermediate form of its functions, and ``proofTURNS`` for each
-            ``...StepsForTurns`` of its header.
+        functions: The intermediate form of its functions, and ``proofNAME`` for each
+            ``...StepsForTurns`` and ``...StepsForMicrometres`` of its header, which is *NAME*.
         min_top: MOTOR_MIN_TOP.
         max_top: MOTOR_MAX_TOP.
-        turns: The motors with ``...StepsForTurns``.
+        units: What makes steps of turns and micrometres: the names of those.
+        steps_per_mm: The steps in a millimetre of the motors that have metric units.
     """
 
     source: Source
     functions: dict[str, Function]
     min_top: int
     max_top: int
-    turns: tuple[str, ...]
+    units: tuple[str, ...]
+    steps_per_mm: dict[str, Fraction]
 
     @property
     def choose(self) -> str:
@@ -53,30 +58,35 @@ class Library:
         return name
 
 
-def read_library(folder: Path, compiler: Path | str, board: Board, scratch: Path) -> Library:
+def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) -> Library:
     """
-    Return the library in *folder*, compiled in *scratch* by *compiler* for *board*.
+    Return the library of *plan* in *folder*, compiled in *scratch* by *compiler*.
     """
     (path,) = (folder / "src").glob("*.cpp")
     header = path.with_suffix(".h").read_text(encoding="utf-8")
     constants = dict(_CONSTANT.findall(header))
-    turns = tuple(_TURNS.findall(header))
+    units = dict(_STEPS_FOR.findall(header))
     unit = scratch / path.name
-    unit.write_text(path.read_text(encoding="utf-8") + "".join(map(_for_turns, turns)), "utf-8")
-    source = read_source(unit)
+    calls = "".join(_call(name, kind) for name, kind in units.items())
+    unit.write_text(path.read_text(encoding="utf-8") + calls, "utf-8")
+    source, board = read_source(unit), plan.board
     flags = (f"-mmcu={board.mcu.name}", f"-DF_CPU={board.f_cpu_hz}UL", f"-I{path.parent}")
     return Library(
         source=source,
         functions=functions(unit, compiler, flags),
         min_top=int(constants["MOTOR_MIN_TOP"]),
         max_top=int(constants["MOTOR_MAX_TOP"]),
-        turns=turns,
+        units=tuple(units),
+        steps_per_mm={
+            motor.name: motor.steps_per_mm
+            for motor in plan.motors
+            if motor.steps_per_mm is not None
+        },
     )
 
 
-def _for_turns(motor: str) -> str:
-    name = f"{motor}StepsForTurns"
-    return f"\nuint32_t proof{name}(uint16_t turns) {{ return {name}(turns); }}\n"
+def _call(name: str, kind: str) -> str:
+    return f"\nuint32_t proof{name}({kind} amount) {{ return {name}(amount); }}\n"
 
 
 class Chosen:

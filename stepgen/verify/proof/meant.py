@@ -9,6 +9,7 @@ _MODULO = "positions count modulo 2**32; that they are the steps made is proven 
 _ENDLESS = "without an end point what is left counts modulo 2**32; else it fits, which is proven"
 _TIMES = "a difference of two times, or a time a while ahead, of a clock that wraps"
 _LOW_BYTES = "the lower bits are what is wanted"
+_METRIC = "it wraps where the header says; that it is the position up to there is proven"
 _PARTS = "the parts make up the whole, which is proven of the interval or of what is left"
 _LAPS = "0 laps stand for 256; without kLaps none is counted; that they make up the limit is proven"
 
@@ -20,6 +21,7 @@ MEANT = {
     "return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + motorCount;": _ENDLESS,
     "return motion.target + (motion.mode & kReverse ? left : -left);": _MODULO,
     "return static_cast<int32_t>(motorPosition());": _MODULO,
+    "return static_cast<int32_t>(static_cast<uint32_t>(motorReadPosition()) * 250UL);": _METRIC,
     "motorShow(motorPosition());": "a phase is the position modulo the phases, a power of two here",
     "motion.rest = steps - 1;": _ENDLESS,
     "const uint32_t rest = limit - 1;": _ENDLESS,
@@ -58,7 +60,7 @@ def is_meant(text: str, motors: tuple[str, ...], used: set[str]) -> bool:
     """
     line = text
     for motor in motors:
-        for after in ("Position", "Show", "EventClock", "Count", "Motion"):
+        for after in ("Position", "ReadPosition", "Show", "EventClock", "Count", "Motion"):
             line = line.replace(f"{motor}{after}", f"motor{after}")
     if line not in MEANT:
         return False

@@ -9,7 +9,7 @@ from typing import Any
 
 import z3
 
-from stepgen.verify.proof.claims import CLAIMS, choice
+from stepgen.verify.proof.claims import CLAIMS, POSITION_READ, choice, longest_way, steps_of
 from stepgen.verify.proof.integers import U16, integer
 from stepgen.verify.proof.library import Chosen, Library
 from stepgen.verify.proof.machine import Machine
@@ -65,8 +65,9 @@ def shared(library: Library) -> list[str]:
     """
     Return the functions that have no motor's state.
     """
-    turns = [f"proof{motor}StepsForTurns" for motor in library.turns]
-    return [library.choose, "motorTimerCalcPerSecond", *turns]
+    speeds = [f"{motor}TimerCalcNanometresPerSecond" for motor in library.steps_per_mm]
+    steps = [f"proof{name}" for name in library.units]
+    return [library.choose, "motorTimerCalcPerSecond", *speeds, *steps]
 
 
 def _prove(library: Library, name: str, motor: str) -> Proof:
@@ -119,7 +120,13 @@ class _Run:
             (period,) = arguments
             self.paths.assume(z3.UGE(period, self.library.min_top))
             self.paths.assume(z3.ULE(period, self.library.max_top))
+        motor = self.name.removeprefix("proof").removesuffix("StepsForMicrometres")
+        per_mm = self.library.steps_per_mm.get(motor)
+        if per_mm is not None:
+            self.paths.assume(z3.ULE(arguments[0], longest_way(per_mm)))
         result = self._machine.call(self.name, *arguments)
+        if per_mm is not None:
+            self._show("the steps are the way's, rounded", steps_of(arguments[0], result, per_mm))
         if choose:
             for says, claim in choice(self.library, self.paths, arguments[0], result):
                 self._show(says, claim)
@@ -131,6 +138,8 @@ class _Run:
         machine.masked, machine.unmasked = self._masked, self._keeps
         if kind != "Update":
             machine.known[f"{self.motor}Update"] = self._updated
+        if kind == "ReadNanometres":
+            machine.known[f"{self.motor}ReadPosition"] = lambda: POSITION_READ
         self._sections = 0
         self._before = self._state()
         if kind == "boundary":
