@@ -50,12 +50,18 @@ class Library:
     steps_per_mm: dict[str, Fraction]
 
     @property
-    def choose(self) -> str:
+    def chooses(self) -> list[str]:
         """
-        Return the name of the function that makes a setting of a virtual TOP.
+        Return the names of the functions that make a setting of a virtual TOP.
         """
-        (name,) = (name for name in _CHOOSE if name in self.functions)
-        return name
+        return [name for name in _CHOOSE if name in self.functions]
+
+    def chooses_for(self, motor: str) -> str:
+        """
+        Return the name of the one for the timer of *motor*.
+        """
+        motion = self.source.structs[self.source.variables[f"{motor}Motion"]]
+        return f"choose{motion['next']}"
 
 
 def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) -> Library:
@@ -96,8 +102,8 @@ class Chosen:
     Of what it returns is known only what that proof says.
     """
 
-    def __init__(self, library: Library, paths: Paths) -> None:
-        kinds = library.source.structs[library.choose.removeprefix("choose")]
+    def __init__(self, library: Library, choose: str, paths: Paths) -> None:
+        kinds = library.source.structs[choose.removeprefix("choose")]
         self._bits = {name: 16 if kind == "uint16_t" else 8 for name, kind in kinds.items()}
         self._paths = paths
 

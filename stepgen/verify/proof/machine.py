@@ -246,8 +246,9 @@ class Machine(Operands):
         kind: Integer,
         frame: Frame,
     ) -> Any:  # noqa: ANN401
-        negative = sign == "+" and self._subtracts(other, kind, frame)
-        if negative:
+        if sign == "+" and self._subtracts(one, kind, frame):
+            one, other = other, one
+        if sign == "+" and self._subtracts(other, kind, frame):
             sign, other = "-", -other
         value, exact = operation(sign, one, other, kind)
         if exact is not None:

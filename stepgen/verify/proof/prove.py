@@ -67,7 +67,7 @@ def shared(library: Library) -> list[str]:
     """
     speeds = [f"{motor}TimerCalcNanometresPerSecond" for motor in library.steps_per_mm]
     steps = [f"proof{name}" for name in library.units]
-    return [library.choose, "motorTimerCalcPerSecond", *speeds, *steps]
+    return [*library.chooses, "motorTimerCalcPerSecond", *speeds, *steps]
 
 
 def _prove(library: Library, name: str, motor: str) -> Proof:
@@ -115,7 +115,7 @@ class _Run:
             self._alone(arguments)
 
     def _alone(self, arguments: list[Any]) -> None:
-        choose = self.name == self.library.choose
+        choose = self.name in self.library.chooses
         if choose:
             (period,) = arguments
             self.paths.assume(z3.UGE(period, self.library.min_top))
@@ -133,8 +133,9 @@ class _Run:
 
     def _with_motor(self, arguments: list[Any]) -> None:
         machine, kind = self._machine, self.name.removeprefix(self.motor).rpartition("_")[2]
-        chosen = Chosen(self.library, self.paths)
-        machine.known = {self.library.choose: chosen}
+        choose = self.library.chooses_for(self.motor)
+        chosen = Chosen(self.library, choose, self.paths)
+        machine.known = {choose: chosen}
         machine.masked, machine.unmasked = self._masked, self._keeps
         if kind != "Update":
             machine.known[f"{self.motor}Update"] = self._updated
