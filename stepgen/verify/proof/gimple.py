@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 _HEADING = re.compile(r"^;; Function .*$", re.MULTILINE)
-_WHERE = re.compile(r"\[(?:[^\]\s\[]*:)?(\d+):\d+\] ")
+_WHERE = re.compile(r"\[(?:([^\]\s\[]*):)?(\d+):\d+\] ")
 _BLOCK = re.compile(r"<bb (\d+)>:$")
 _DECLARATION = re.compile(r"^(?P<type>.*?[\s*&])(?P<name>[\w.]+)$")
 
@@ -21,7 +21,7 @@ _DECLARATION = re.compile(r"^(?P<type>.*?[\s*&])(?P<name>[\w.]+)$")
 @dataclass(frozen=True)
 class Statement:
     """
-    One statement, as text, and the line of the source that it comes from (0: none).
+    One statement, as text, and the line of the source that it comes from (0: none, or a header's).
     """
 
     text: str
@@ -111,5 +111,5 @@ def _complete(text: str) -> bool:
 
 
 def _statement(text: str) -> Statement:
-    lines = [int(line) for line in _WHERE.findall(text)]
+    lines = [int(line) for file, line in _WHERE.findall(text) if not file.endswith(".h")]
     return Statement(_WHERE.sub("", text).rstrip(";"), lines[0] if lines else 0)

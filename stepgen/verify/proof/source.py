@@ -43,8 +43,10 @@ class Source:
 
     def statement(self, line: int) -> str:
         """
-        Return the statement that *line* is part of, on one line and without comments.
+        Return the statement that *line* is part of, on one line and without comments; of line 0 "".
         """
+        if not line:
+            return ""
         code = [_COMMENT.sub("", text).strip() for text in self.lines]
         first = last = line - 1
         while first and code[first - 1] and code[first - 1][-1] not in _ENDS:
