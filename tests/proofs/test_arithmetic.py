@@ -15,14 +15,18 @@ from stepgen import api
 from stepgen.library.render import render_library, template_dir
 from stepgen.verify.compilers import default_compiler
 from stepgen.verify.proof.library import read_library
-from stepgen.verify.proof.meant import MEANT
+from stepgen.verify.proof.meant import MEANT, for_motor
 from stepgen.verify.proof.prove import Proof, prove_library
 
 SPECS = Path(__file__).resolve().parents[2] / "specs"
 EVERY_SPEC = sorted(SPECS.glob("*.yaml"))
 
+_LONG = "its step interrupt takes minutes, and was not gone through yet as the templates are now"
 NOT_PROVEN = {
     "uno_debug": "its header needs Print of the Arduino core, which is not compiled for the proof",
+    "pro-mini-8mhz_28byj48": _LONG,
+    "uno_three_ports_variable": _LONG,
+    "mega_stacked_shields_variable": _LONG,
 }
 """The specs that the campaign leaves out, each with the reason; the README names them too."""
 
@@ -217,9 +221,11 @@ def test_what_is_meant_is_there() -> None:
     written = ""
     for path in EVERY_SPEC:
         plan = api.plan(path)
+        motors = tuple(motor.name for motor in plan.motors)
         files = render_library(plan, "")
-        written += "".join(text for name, text in files.items() if name.endswith(".cpp"))
+        sources = (text for name, text in files.items() if name.endswith(".cpp"))
+        written += "".join(for_motor(text, motors) for text in sources)
     code = " ".join(line.partition("//")[0].strip() for line in written.splitlines())
-    left = [text for text in MEANT if text not in code and "motorCount" not in text]
+    left = [text for text in MEANT if text not in code]
 
     assert left == []

@@ -5,6 +5,8 @@ A statement stands here as it is written, for a motor called ``motor``. One that
 longer meant: it needs a proof, or a new reason.
 """
 
+import re
+
 _MODULO = "positions count modulo 2**32; that they are the steps made is proven beside it"
 _ENDLESS = "without an end point what is left counts modulo 2**32; else it fits, which is proven"
 _TIMES = "a difference of two times, or a time a while ahead, of a clock that wraps"
@@ -58,11 +60,18 @@ def is_meant(text: str, motors: tuple[str, ...], used: set[str]) -> bool:
     """
     Tell whether the statement *text* may lose bits, and note its use in *used*.
     """
-    line = text
-    for motor in motors:
-        for after in ("Position", "ReadPosition", "Show", "EventClock", "Count", "Motion"):
-            line = line.replace(f"{motor}{after}", f"motor{after}")
+    line = for_motor(text, motors)
     if line not in MEANT:
         return False
     used.add(line)
     return True
+
+
+def for_motor(text: str, motors: tuple[str, ...]) -> str:
+    """
+    Return *text* of a library of *motors* as it were for one called ``motor``.
+    """
+    for motor in motors:
+        for after in ("Position", "ReadPosition", "Show", "EventClock", "Count", "Motion"):
+            text = re.sub(rf"\b{motor}{after}\b", f"motor{after}", text)
+    return text
