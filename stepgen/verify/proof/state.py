@@ -256,6 +256,9 @@ def _of_events(state: State) -> Claims:
             pending, state.to_event <= wide(state.of("interval"))
         ),
         "only a motor that coasts thinks first": state.is_in(THINK) == state.is_in(COAST),
+        "a motor that coasts looks at no clock": z3.Not(
+            z3.And(state.is_in(COAST), state.is_in(CLOCKED))
+        ),
         "a limit in milliseconds has none in steps": z3.Implies(
             z3.And(running, state.is_in(LIMITED)), state.is_in(ENDLESS)
         ),
