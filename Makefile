@@ -26,13 +26,20 @@ APT_INSTALL = as_root=; \
 	$$as_root env DEBIAN_FRONTEND=noninteractive \
 		apt-get install --yes -qq --no-install-recommends $(1)
 
+# From lines such as "stepgen.plan.pins.x_missing_pin__mutmut_1: killed": the score by package.
+MUTATION_SCORE := { split($$1, name, "."); package = name[2]; state = $$2; \
+	mutants[package]++; of[package, state]++ } \
+	END { for (package in mutants) printf "%s: %d mutants, %d killed, %d timeouts, %d survived: %.1f %%\n", \
+	package, mutants[package], of[package, "killed"], of[package, "timeout"], of[package, "survived"], \
+	100 * (of[package, "killed"] + of[package, "timeout"]) / mutants[package] }
+
 # The second compiler is used where pip put it, not copied into the home folder.
 export PYMCU_TOOLCHAIN_NO_SEEDING := 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo test lint verify matrix generated campaign yasimavr benchmark setup debian clean distclean
+.PHONY: help demo test lint verify matrix generated campaign mutation yasimavr benchmark setup debian clean distclean
 
 help:  ## Show this list.
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
@@ -59,6 +66,11 @@ matrix: setup  ## The same on every compiler and every simulator that is install
 
 campaign: setup $(STAMPS)/fuzz  ## Run what takes long: random campaigns, fuzzing, every spec on each compiler.
 	$(BIN)/pytest -n $(JOBS) -m campaign
+	$(MAKE) mutation
+
+mutation: setup  ## Run the mutation tests of plan/ and reference/, and print their score.
+	$(BIN)/mutmut run --max-children $(JOBS)
+	@$(BIN)/mutmut results --all true | awk '$(MUTATION_SCORE)'
 
 yasimavr: setup $(STAMPS)/yasimavr  ## Compile the third simulator and run the tests on it.
 	$(BIN)/pytest -n $(JOBS) -m yasimavr
@@ -74,7 +86,7 @@ generated: $(STAMPS)/runtime  ## Write the checked-in library of each spec again
 setup: debian $(STAMPS)/avr8js  ## Install what the tests need, and run nothing.
 
 clean:  ## Remove what was built; .venv stays.
-	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf build dist mutants .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find stepgen tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 distclean: clean  ## Remove .venv as well.
@@ -109,7 +121,7 @@ $(STAMPS)/runtime: pyproject.toml | $(STAMPS)/venv
 # --group came with pip 25.1; Debian 12's is older.
 $(STAMPS)/dev: pyproject.toml | $(STAMPS)/venv
 	$(PIP_INSTALL) --upgrade 'pip>=25.1'
-	$(PIP_INSTALL) --editable '.[verify,avr8js]' --group dev
+	$(PIP_INSTALL) --editable '.[verify,avr8js,proof]' --group dev
 	@touch $@ $(STAMPS)/runtime
 
 $(STAMPS)/fuzz: pyproject.toml $(STAMPS)/dev

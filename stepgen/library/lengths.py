@@ -51,7 +51,9 @@ def lengths(motor: MotorPlan, f_cpu_hz: int) -> Lengths | None:
             f"The virtual timer TOP for a speed in nanometres per second, {float(per_mm):.10g} "
             "steps in a millimetre; 0 for 0, which stops the motor."
         ),
-        steps_comment=comment_lines(f"Steps for a way in micrometres, rounded: {each}."),
+        steps_comment=comment_lines(
+            f"Steps for a way in micrometres, rounded: {each}. They wrap at 2^32."
+        ),
         position_comment=comment_lines(
             f"Where the motor is, in nanometres: {each}, backward ones subtracted. It is read "
             f"whole, and wraps at 32 bits: {min(half_range_mm, _INT32_MM):.6g} mm either way."

@@ -24,6 +24,7 @@ from stepgen.reference.stimuli import (
     SetSpeed,
     Stimulus,
 )
+from stepgen.reference.verdict import fault_bits
 
 HOLDS = MotorFacts(phases("four-wire", "full"), coils_off("four-wire"), 640, "hold")
 RELEASES = MotorFacts(phases("four-wire", "full"), coils_off("four-wire"), 640, "release")
@@ -210,3 +211,30 @@ def test_values_that_no_register_holds_are_refused(make: Callable[[], object]) -
     """
     with pytest.raises(ValueError, match=r"is (not within|none of|out of range)"):
         make()
+
+
+def test_each_edge_names_the_call_that_made_it() -> None:
+    """
+    Coils that a call switches are its own, and so is the turn back to phase 0 by Init.
+    """
+    calls: list[Stimulus] = [
+        SetSpeed(50, 0x80, 1000, 1),  # call 0: energise, and the step at 1100
+        CLOCK,
+        Release(1200),  # call 1: off
+        Hold(1300),  # call 2: on again
+        SetSpeed(1400, 0, 0),  # call 3: a stop without DRV_EN, off
+        Hold(1500),  # call 4: on
+        Init(1600),  # call 5: off
+    ]
+
+    run = predict(HOLDS, calls, until_cycle=2000)
+
+    assert [edge.call_index for edge in run.edges] == [0, 0, 1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("code", [Code.FINE, Code.NOT_DRIVEN])
+def test_a_call_that_is_not_refused_is_no_fault(code: Code) -> None:
+    """
+    0 and warnings set no fault bits.
+    """
+    assert fault_bits(code) == Status(0)

@@ -2,9 +2,19 @@
 Timer arithmetic against literals of the datasheet and the source's calculator.
 """
 
+from collections.abc import Callable
+
 import pytest
 
-from stepgen.reference.timer import first_overflow_cycle, first_tick_cycle, timer_setting
+from stepgen.reference.facts import MotorFacts
+from stepgen.reference.sequences import coils_off, phases
+from stepgen.reference.timer import (
+    TimerSetting,
+    first_overflow_cycle,
+    first_tick_cycle,
+    through_running_setting,
+    timer_setting,
+)
 
 
 @pytest.mark.parametrize(
@@ -75,3 +85,37 @@ def test_overflow_is_the_tick_from_top_to_bottom(tcnt: int, overflow_cycle: int)
     TOV rises with the tick that takes the counter from TOP to 0; at or past TOP it misses.
     """
     assert first_overflow_cycle(0, tcnt, timer_setting(80)) == overflow_cycle
+
+
+@pytest.mark.parametrize(
+    ("setting", "slowest"),
+    [
+        (timer_setting, TimerSetting(1024, 65_535)),
+        (through_running_setting, TimerSetting(8, 8_388_480)),
+    ],
+)
+def test_the_range_of_virtual_values_ends_where_it_says(
+    setting: Callable[[int], TimerSetting], slowest: TimerSetting
+) -> None:
+    """
+    A tick of the finest prescaler is the fastest, 65535 * 1024 cycles the slowest.
+    """
+    prescaler = slowest.prescaler if setting is through_running_setting else 1
+
+    assert setting(prescaler) == TimerSetting(prescaler, 1)
+    assert setting(65_535 * 1024) == slowest
+    for beyond in (prescaler - 1, 65_535 * 1024 + 1):
+        with pytest.raises(ValueError, match="not within"):
+            setting(beyond)
+
+
+@pytest.mark.parametrize("cycles", [4, 65_535 * 1024])
+def test_the_least_virtual_value_can_be_at_either_end(cycles: int) -> None:
+    """
+    Mode 15 has a TOP of 3 at least; one beyond either end is refused.
+    """
+    coils = (phases("four-wire", "full"), coils_off("four-wire"))
+
+    assert MotorFacts(*coils, cycles, "hold").minimum_cycles == cycles
+    with pytest.raises(ValueError, match="out of range"):
+        MotorFacts(*coils, 3 if cycles == 4 else cycles + 1, "hold")

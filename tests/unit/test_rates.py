@@ -179,3 +179,11 @@ def test_a_rate_is_never_slower_than_wanted(wanted_sps: Fraction) -> None:
 
     assert rate.real_sps >= wanted_sps
     assert rate.period_clocks > UNO.io_hz / wanted_sps - 1 - rate.prescaler
+
+
+@pytest.mark.parametrize("f_cpu_hz", [1, 20_000_000])
+def test_an_oscillator_at_either_end_of_its_range(f_cpu_hz: int) -> None:
+    """
+    The datasheet has 20 MHz at most; there is no lower end but 1 Hz.
+    """
+    assert Clock(f_cpu_hz).f_cpu_hz == f_cpu_hz

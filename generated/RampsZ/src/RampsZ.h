@@ -64,7 +64,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of ports K and L with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 5 belongs to the motor: no analogWrite() on D46, D45 or D44.
 
-// Steps for a way in micrometres, rounded: 250 nm each.
+// Steps for a way in micrometres, rounded: 250 nm each. They wrap at 2^32.
 constexpr uint32_t zStepsForMicrometres(uint32_t micrometres) {
   return micrometres * 4UL;
 }

@@ -1,0 +1,77 @@
+"""
+The statements of a generated source where losing bits is meant, each with its reason.
+
+A statement stands here as it is written, for a motor called ``motor``. One that changes is no
+longer meant: it needs a proof, or a new reason.
+"""
+
+import re
+
+_MODULO = "positions count modulo 2**32; that they are the steps made is proven beside it"
+_ENDLESS = "without an end point what is left counts modulo 2**32; else it fits, which is proven"
+_TIMES = "a difference of two times, or a time a while ahead, of a clock that wraps"
+_LOW_BYTES = "the lower bits are what is wanted"
+_METRIC = "it wraps where the header says; that it is the position up to there is proven"
+_PARTS = "the parts make up the whole, which is proven of the interval or of what is left"
+_LAPS = "0 laps stand for 256; without kLaps none is counted; that they make up the limit is proven"
+
+MEANT = {
+    # Positions and what is left.
+    "return motion.rest + GPIOR1;": _ENDLESS,
+    "return motion.rest + motorCount;": _ENDLESS,
+    "return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + GPIOR1;": _ENDLESS,
+    "return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + motorCount;": _ENDLESS,
+    "return motion.target + (motion.mode & kReverse ? left : -left);": _MODULO,
+    "return static_cast<int32_t>(motorPosition());": _MODULO,
+    "return static_cast<int32_t>(static_cast<uint32_t>(motorReadPosition()) * 250UL);": _METRIC,
+    "motorShow(motorPosition());": "a phase is the position modulo the phases, a power of two here",
+    "motion.rest = steps - 1;": _ENDLESS,
+    "const uint32_t rest = limit - 1;": _ENDLESS,
+    "steps = -steps;": _MODULO,
+    "motion.target = here + steps;": _MODULO,
+    "motion.target = mode & kReverse ? here - limit : here + limit;": _MODULO,
+    "motion.rest = rest;": "its upper half is in the next line",
+    "--motion.restHigh;": _ENDLESS,
+    "motion.rest = rest - run;": _ENDLESS,
+    "motion.rest += ahead;": _ENDLESS,
+    "motion.rest = -1;": "with the one that is counted down, no step is left",
+    "motion.rest = motion.restHigh = -1;": "with the one that is counted down, no step is left",
+    # Times.
+    "const uint32_t gone = timer0_millis - motion.start;": _TIMES,
+    "const int32_t left = near(motorMotion).eventAt - motorEventClock();": _TIMES,
+    "motion.eventAt = count + motion.interval;": _TIMES,
+    "motion.wake = motion.start;": _TIMES,
+    "motion.wake = millisNow() + wait;": _TIMES,
+    "motion.endMillis = millisCount() + wait;": _TIMES,
+    "motion.endMillis += 0x4000;": _TIMES,
+    "return static_cast<int16_t>(millisCount() - motorMotion.endMillis) >= 0;": _TIMES,
+    "motion.laps = laps;": _LAPS,
+    "motion.lapsHigh = (laps - 1) >> 8;": _LAPS,
+    "if (--motion.laps) return;": _LAPS,
+    "uint16_t wait = millis & 0x3FFF;": _LOW_BYTES,
+    # Intervals of the timing compare.
+    "const uint8_t rest = ticks;": _LOW_BYTES,
+    "return {first, static_cast<uint8_t>(rest - first), static_cast<uint8_t>(laps), "
+    "static_cast<uint8_t>((laps - 1) >> 8)};": _PARTS,
+}
+
+
+def is_meant(text: str, motors: tuple[str, ...], used: set[str]) -> bool:
+    """
+    Tell whether the statement *text* may lose bits, and note its use in *used*.
+    """
+    line = for_motor(text, motors)
+    if line not in MEANT:
+        return False
+    used.add(line)
+    return True
+
+
+def for_motor(text: str, motors: tuple[str, ...]) -> str:
+    """
+    Return *text* of a library of *motors* as it were for one called ``motor``.
+    """
+    for motor in motors:
+        for after in ("Position", "ReadPosition", "Show", "EventClock", "Count", "Motion"):
+            text = re.sub(rf"\b{motor}{after}\b", f"motor{after}", text)
+    return text

@@ -1,0 +1,119 @@
+"""
+Following all ways through code whose values are unknown, one after the other.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import z3
+
+
+@dataclass(frozen=True)
+class Violation:
+    """
+    A claim that does not hold, where, and values of the inputs with which it does not.
+    """
+
+    claim: str
+    where: str
+    example: str
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.claim}; for {self.example}"
+
+
+class Paths:
+    """
+    The ways through a piece of code; each run of it takes one.
+
+    The code is run again for each way, and asks `decide` at each fork. It must do the same each
+    time it decides the same. What it claims on a way is proven at the end of the way.
+    """
+
+    def __init__(self) -> None:
+        self.violations: list[Violation] = []
+        self.inputs: dict[str, Any] = {}
+        self.proven = 0
+        self._solver = z3.Solver()
+        self._claims: list[tuple[Any, str, str]] = []
+        self._taken: list[bool] = []
+        self._prefix: list[bool] = []
+        self._waiting: list[list[bool]] = []
+
+    def runs(self, body: Callable[[], None]) -> Iterator[None]:
+        """
+        Run *body* once for each way through it, and yield after each.
+        """
+        self._waiting = [[]]
+        while self._waiting:
+            self._prefix, self._taken, self._claims = self._waiting.pop(), [], []
+            self._solver = z3.Solver()
+            body()
+            self._prove()
+            yield
+
+    @property
+    def taken(self) -> tuple[bool, ...]:
+        """
+        Return what was decided on this way so far.
+        """
+        return tuple(self._taken)
+
+    def assume(self, condition: Any) -> None:  # noqa: ANN401 - z3 has no types
+        """
+        Take *condition* for granted from here on.
+        """
+        self._solver.add(condition)
+
+    def decide(self, condition: Any) -> bool:  # noqa: ANN401
+        """
+        Return whether *condition* holds on this way; where both can be, each has its run.
+        """
+        condition = z3.simplify(condition)
+        if z3.is_true(condition) or z3.is_false(condition):
+            return bool(z3.is_true(condition))
+        if len(self._taken) < len(self._prefix):
+            answer = self._prefix[len(self._taken)]
+        elif not self._possible(condition):
+            answer = False
+        else:
+            answer = True
+            if self._possible(z3.Not(condition)):
+                self._waiting.append([*self._taken, False])
+        self._taken.append(answer)
+        self._solver.add(condition if answer else z3.Not(condition))
+        return answer
+
+    def prove(self, claim: Any, says: str, where: str) -> None:  # noqa: ANN401
+        """
+        Demand that *claim* holds on this way.
+        """
+        self._claims.append((z3.simplify(claim), says, where))
+
+    def _prove(self) -> None:
+        """
+        Show that all claims of this way hold, or note those that do not as violations.
+        """
+        self.proven += len(self._claims)
+        for claim, says, where in self._claims:
+            if not z3.is_true(claim) and self._possible(z3.Not(claim)):
+                self.violations.append(Violation(says, where, self._example(z3.Not(claim))))
+
+    def _example(self, condition: Any) -> str:  # noqa: ANN401
+        self._solver.push()
+        self._solver.add(condition)
+        self._solver.check()
+        model = self._solver.model()
+        self._solver.pop()
+        values = {name: model[value.decl()] for name, value in self.inputs.items()}
+        return ", ".join(f"{name} = {value}" for name, value in values.items() if value is not None)
+
+    def _possible(self, condition: Any) -> bool:  # noqa: ANN401
+        self._solver.push()
+        self._solver.add(condition)
+        answer = self._solver.check()
+        self._solver.pop()
+        if answer == z3.unknown:
+            raise RuntimeError("z3 cannot tell")
+        return bool(answer == z3.sat)
