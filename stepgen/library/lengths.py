@@ -20,10 +20,10 @@ FUNCTIONS = ("TimerCalcNanometresPerSecond", "StepsForMicrometres", "ReadNanomet
 @dataclass(frozen=True)
 class Lengths:
     """
-    The bodies of its functions, and what they stand for.
+    The bodies of its functions, and what they stand for; *top* in whole statements.
     """
 
-    top: str
+    top: tuple[str, ...]
     steps: str
     position: str
     top_comment: tuple[str, ...]
@@ -64,13 +64,20 @@ def lengths(motor: MotorPlan, f_cpu_hz: int) -> Lengths | None:
 _INT32_MM = _INT32_STATES / 2 / _NM_IN_A_MM
 
 
-def _top(nanometres: Fraction, f_cpu_hz: int) -> str:
+def _top(nanometres: Fraction, f_cpu_hz: int) -> tuple[str, ...]:
+    """
+    Return the statements: what does not fit 32 bits is their largest, which is refused as too slow.
+    """
     clocks = "motorTimerGetIOclocksPerSecond()"
     number, divisor = nanometres.numerator, nanometres.denominator
     if divisor == 1 and f_cpu_hz * number <= _UINT32_MAX:
-        return f"speed ? {clocks} * {number}UL / speed : 0"
+        return (f"return speed ? {clocks} * {number}UL / speed : 0;",)
     below = "speed" if divisor == 1 else f"({divisor}ULL * speed)"
-    return f"speed ? {clocks} * {number}ULL / {below} : 0"
+    return (
+        "if (speed == 0) return 0;",
+        f"const uint64_t top = {clocks} * {number}ULL / {below};",
+        "return top > UINT32_MAX ? UINT32_MAX : top;",
+    )
 
 
 def _steps(per_um: Fraction) -> str:

@@ -193,7 +193,7 @@ class Pulse:
         far = 0 if self.is_near or self.toggles else _FAR_CYCLES
         pulse = self.cycles.high + self.low_wait_cycles + far
         return HandlerCycles(
-            longest=165 + pulse,
+            longest=151 + pulse,
             masked=14 + self.hold_wait_cycles + self.setup_wait_cycles,
             to_clock=72,
             to_clock_thinking=86 + pulse,

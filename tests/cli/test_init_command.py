@@ -85,7 +85,7 @@ def test_a_file_that_is_there_stays(stepgen: Stepgen, pan: Path) -> None:
 
 def test_it_asks_and_offers_what_is_possible(tmp_path: Path) -> None:
     """
-    On a Mega beside Servo timer 5 is taken; an empty answer is the one in brackets.
+    On a Mega beside Servo timer 5 is taken, and every vector that CTC needs; an empty answer is the one in brackets.
     """
     answers = ["Fan", "mega", "Servo", "fan", "four-wire", "A8, A9, A10, A11", "", "", "", ""]
     done = subprocess.run(
@@ -136,7 +136,7 @@ def test_only_valid_timers_are_offered() -> None:
     """
     Each offered timer makes a spec that is fine: an Uno has 1 and 2, with tone() only 1.
     """
-    assert possible_timers(Draft()) == (("fast-pwm", 1), ("compare", 2))
+    assert possible_timers(Draft()) == (("fast-pwm", 1), ("ctc", 1), ("compare", 2))
     assert possible_timers(Draft(uses=("tone D8",), drive="four-wire")) == ()
     four = Draft(uses=("tone D8",), drive="four-wire", drive_fields=(("pins", [4, 5, 6, 7]),))
-    assert possible_timers(four) == (("fast-pwm", 1),)
+    assert possible_timers(four) == (("fast-pwm", 1), ("ctc", 1))

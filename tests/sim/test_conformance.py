@@ -12,6 +12,7 @@ from stepgen import api
 from stepgen.devices import boards
 from stepgen.errors import StepgenError
 from stepgen.plan.kernels import Ring, Toggle
+from stepgen.plan.pulses import Pulse
 from stepgen.spec.timings import KINDS as TIMINGS
 from stepgen.verify import avr8js, yasimavr
 from stepgen.verify.compilers import default_compiler
@@ -118,7 +119,7 @@ def test_every_kind_declares_the_points_that_it_needs() -> None:
     }
 
     assert set(needs.OF_TIMING) == kinds
-    assert set(needs.OF_KERNEL) == {Toggle.kind, Ring.kind}
+    assert set(needs.OF_KERNEL) == {Toggle.kind, Ring.kind, Pulse.kind}
     assert set(needs.OF_CHIP) == {board.mcu.name for board in boards()}
     assert named <= {point.name for point in points()}
 

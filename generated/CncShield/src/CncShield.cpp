@@ -237,7 +237,7 @@ INLINE void xTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 37 cycles from the interrupt's response to RETI; at most 226 when it
+// Timer 1 overflow: one step, 37 cycles from the interrupt's response to RETI; at most 212 when it
 // goes on in __vector_x_boundary. STEP rises 17 cycles after the timer wraps (22 before a
 // boundary). It writes port B and D and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.
@@ -549,7 +549,7 @@ INLINE void yRunTimer() {
   TIMSK2 = _BV(OCIE2A);
 }
 
-// Timer 2 compare match A: one step, 73 cycles from the interrupt's response to RETI; at most 296
+// Timer 2 compare match A: one step, 73 cycles from the interrupt's response to RETI; at most 282
 // when it comes too late and goes on in __vector_y_boundary. STEP rises 63 cycles after the match
 // (68 before a boundary). Between two steps it counts laps of the timer, 25 cycles each, and 55 for
 // the last of them. It writes port D and nothing else that the sketch can see. Behind each

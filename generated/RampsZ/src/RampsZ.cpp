@@ -195,7 +195,7 @@ INLINE void zTakeOver(uint8_t elapsed) {
   if (TCNT5 > next.top) TCNT5 = next.top - 1;
 }
 
-// Timer 5 compare match A: one step, 46 cycles from the interrupt's response to RETI; at most 236
+// Timer 5 compare match A: one step, 46 cycles from the interrupt's response to RETI; at most 222
 // when it goes on in __vector_z_boundary. STEP rises 21 cycles after the match (26 before a
 // boundary). It writes port L and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
