@@ -85,7 +85,7 @@ def test_a_file_that_is_there_stays(stepgen: Stepgen, pan: Path) -> None:
 
 def test_it_asks_and_offers_what_is_possible(tmp_path: Path) -> None:
     """
-    On a Mega beside Servo timer 5 is taken, and every vector that CTC needs; an empty answer is the one in brackets.
+    Beside Servo a Mega has no timer 5 and no vector for CTC; Enter takes what is in brackets.
     """
     answers = ["Fan", "mega", "Servo", "fan", "four-wire", "A8, A9, A10, A11", "", "", "", ""]
     done = subprocess.run(
