@@ -83,7 +83,7 @@ class Ring:
         more = len(self.writes) - 1
         far = sum(not share.port.port.in_io for share in self.ports)  # LDS and STS, not IN and OUT
         return HandlerCycles(
-            longest=162 + 3 * more,
+            longest=166 + 3 * more,
             masked=9 * more + 8 * far,
             to_clock=77,
             to_clock_thinking=thinking,

@@ -98,6 +98,8 @@ class Simulator:
         longest_scenario_cycles: Longer scenarios are left out, as too slow; None for no limit.
         corrected: Points of the conformance suite that it meets only because stepgen puts it
             right.
+        tells_overruns: Whether a sketch that reads a counter gets it to the very cycle, on which
+            it depends whether a step counts as missed.
     """
 
     name: str
@@ -108,6 +110,7 @@ class Simulator:
     tolerance_cycles: int = 0
     longest_scenario_cycles: int | None = None
     corrected: frozenset[str] = frozenset()
+    tells_overruns: bool = False
 
     @property
     def version(self) -> str:
@@ -160,6 +163,7 @@ SIMAVR = Simulator(
         | _MASKING
         | _RESPONSES
     ),
+    tells_overruns=True,
 )
 AVR8JS = Simulator(
     "avr8js",

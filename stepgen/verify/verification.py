@@ -77,10 +77,11 @@ def verify_spec(
 
 def _scenarios(plan: Plan, simulator: Simulator) -> tuple[Scenario, ...]:
     """
-    Return the scenarios of *plan* that are not too long for *simulator*.
+    Return the scenarios of *plan* that *simulator* can tell, and that are not too long for it.
     """
     longest = simulator.longest_scenario_cycles
-    kinds = (standard_scenarios, update_scenarios, sharing_scenarios, late_scenarios)
+    late = (late_scenarios,) if simulator.tells_overruns else ()
+    kinds = (standard_scenarios, update_scenarios, sharing_scenarios, *late)
     every = [scenario for kind in kinds for scenario in kind(plan)]
     return tuple(one for one in every if longest is None or one.cycles <= longest)
 

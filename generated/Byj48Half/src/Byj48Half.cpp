@@ -209,7 +209,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 212 when it
+// Timer 1 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 216 when it
 // goes on in __vector_motor_boundary. The wires change 34 cycles after the timer wraps (39 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

@@ -220,7 +220,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 102 cycles from the interrupt's response to RETI; at most 285 when it
+// Timer 4 overflow: one step, 102 cycles from the interrupt's response to RETI; at most 289 when it
 // goes on in __vector_motor_boundary. The wires change 87 cycles after the timer wraps (92 before a
 // boundary). It writes port H, J, K and L and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.

@@ -190,7 +190,7 @@ INLINE void motorRunTimer() {
   TIMSK2 = _BV(OCIE2A);
 }
 
-// Timer 2 compare match A: one step, 134 cycles from the interrupt's response to RETI; at most 369
+// Timer 2 compare match A: one step, 134 cycles from the interrupt's response to RETI; at most 373
 // when it comes too late and goes on in __vector_motor_boundary. The wires change 119 cycles after
 // the match (124 before a boundary). Between two steps it counts laps of the timer, 27 cycles each,
 // and 57 for the last of them. It writes port A, C, F and K and nothing else that the sketch can

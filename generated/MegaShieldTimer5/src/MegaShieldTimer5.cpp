@@ -203,7 +203,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR5 & _BV(TOV5))) next.select = 0;
 }
 
-// Timer 5 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 213 when it
+// Timer 5 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 217 when it
 // goes on in __vector_motor_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

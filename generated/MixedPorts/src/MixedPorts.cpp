@@ -213,7 +213,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 62 cycles from the interrupt's response to RETI; at most 234 when it
+// Timer 1 overflow: one step, 62 cycles from the interrupt's response to RETI; at most 238 when it
 // goes on in __vector_motor_boundary. The wires change 48 cycles after the timer wraps (53 before a
 // boundary). It writes port B and D and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.

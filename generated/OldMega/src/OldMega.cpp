@@ -201,7 +201,7 @@ INLINE void nearTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 212 when it
+// Timer 3 overflow: one step, 46 cycles from the interrupt's response to RETI; at most 216 when it
 // goes on in __vector_near_boundary. The wires change 34 cycles after the timer wraps (39 before a
 // boundary). It writes port A and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -566,7 +566,7 @@ INLINE void farTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 218 when it
+// Timer 4 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 222 when it
 // goes on in __vector_far_boundary. The wires change 40 cycles after the timer wraps (45 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

@@ -209,7 +209,7 @@ INLINE void panTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 215 when it
+// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 219 when it
 // goes on in __vector_pan_boundary. The wires change 37 cycles after the timer wraps (42 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -569,7 +569,7 @@ INLINE void tiltTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 217 when it
+// Timer 3 overflow: one step, 52 cycles from the interrupt's response to RETI; at most 221 when it
 // goes on in __vector_tilt_boundary. The wires change 39 cycles after the timer wraps (44 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

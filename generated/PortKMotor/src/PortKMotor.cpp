@@ -209,7 +209,7 @@ INLINE void motorTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 215 when it
+// Timer 4 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 219 when it
 // goes on in __vector_motor_boundary. The wires change 37 cycles after the timer wraps (42 before a
 // boundary). It writes port K and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

@@ -175,7 +175,7 @@ INLINE void motorRunTimer() {
   TIMSK2 = _BV(OCIE2A);
 }
 
-// Timer 2 compare match A: one step, 90 cycles from the interrupt's response to RETI; at most 308
+// Timer 2 compare match A: one step, 90 cycles from the interrupt's response to RETI; at most 312
 // when it comes too late and goes on in __vector_motor_boundary. The wires change 78 cycles after
 // the match (83 before a boundary). Between two steps it counts laps of the timer, 25 cycles each,
 // and 55 for the last of them. It writes port B and D and nothing else that the sketch can see.

@@ -239,7 +239,7 @@ INLINE void lowerTakeOver() {
   if (!(TIFR4 & _BV(TOV4))) next.select = 0;
 }
 
-// Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 213 when it
+// Timer 4 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 217 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and E and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.
@@ -608,7 +608,7 @@ SHARED void upperTakeOver() {
 }
 
 // Timer 5 overflow: one step, 58 cycles from the interrupt's response to RETI, 77 with a look at
-// the clock; at most 874 when it goes on in __vector_upper_boundary. The wires change 45 cycles
+// the clock; at most 878 when it goes on in __vector_upper_boundary. The wires change 45 cycles
 // after the timer wraps (69 before a boundary). It writes port B, E and H and nothing else that the
 // sketch can see. Behind each instruction stand its cycles.
 ISR(TIMER5_OVF_vect, ISR_NAKED) {

@@ -220,7 +220,7 @@ INLINE void leftRunTimer() {
   TIMSK2 = _BV(OCIE2A);
 }
 
-// Timer 2 compare match A: one step, 90 cycles from the interrupt's response to RETI; at most 308
+// Timer 2 compare match A: one step, 90 cycles from the interrupt's response to RETI; at most 312
 // when it comes too late and goes on in __vector_left_boundary. The wires change 78 cycles after
 // the match (83 before a boundary). Between two steps it counts laps of the timer, 25 cycles each,
 // and 55 for the last of them. It writes port B and D and nothing else that the sketch can see.
@@ -686,7 +686,7 @@ INLINE void rightTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 216 when it
+// Timer 1 overflow: one step, 50 cycles from the interrupt's response to RETI; at most 220 when it
 // goes on in __vector_right_boundary. The wires change 38 cycles after the timer wraps (43 before a
 // boundary). It writes port D and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.

@@ -204,7 +204,7 @@ INLINE void lowerTakeOver() {
   if (!(TIFR1 & _BV(TOV1))) next.select = 0;
 }
 
-// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 213 when it
+// Timer 1 overflow: one step, 48 cycles from the interrupt's response to RETI; at most 217 when it
 // goes on in __vector_lower_boundary. The wires change 35 cycles after the timer wraps (40 before a
 // boundary). It writes port B and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
@@ -567,7 +567,7 @@ INLINE void upperTakeOver() {
   if (!(TIFR3 & _BV(TOV3))) next.select = 0;
 }
 
-// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 219 when it
+// Timer 3 overflow: one step, 54 cycles from the interrupt's response to RETI; at most 223 when it
 // goes on in __vector_upper_boundary. The wires change 41 cycles after the timer wraps (46 before a
 // boundary). It writes port H and nothing else that the sketch can see. Behind each instruction
 // stand its cycles.
