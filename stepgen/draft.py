@@ -3,13 +3,14 @@ A first spec, made of answers: its text with comments, and which answers are pos
 """
 
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
 
 from stepgen.devices import SKETCH_LIBRARIES, Board, find_board, library_claims
 from stepgen.errors import Fault, StepgenError
@@ -144,12 +145,49 @@ def rests() -> tuple[str, ...]:
     return get_args(Motor.model_fields["at_rest"].annotation)
 
 
-def required_fields(drive: str) -> Mapping[str, str]:
+@dataclass(frozen=True)
+class Question:
     """
-    Return the fields that a *drive* cannot do without, and what each is for.
+    A field of a drive that a first spec is asked for: what it is for, and its default as text.
+
+    *several* tells whether the answer is a list, such as pins.
     """
-    fields = _kind(DRIVES, drive).model_fields
-    return {name: str(field.description) for name, field in fields.items() if field.is_required()}
+
+    name: str
+    text: str = ""
+    default: str = ""
+    several: bool = False
+
+    def value(self, answer: str) -> Any:  # noqa: ANN401 - any YAML
+        """
+        Return *answer* as YAML holds it.
+
+        Raises:
+            StepgenError: It is no YAML.
+        """
+        if self.several:
+            return answer.replace(",", " ").split()
+        try:
+            return YAML(typ="safe", pure=True).load(answer)
+        except YAMLError:
+            raise StepgenError.of(f"is no value for {self.name}", text=answer[:80]) from None
+
+
+def questions(drive: str) -> tuple[Question, ...]:
+    """
+    Return what a *drive* is asked for: what it cannot do without, and what its kind names.
+    """
+    kind = _kind(DRIVES, drive)
+    return tuple(
+        Question(
+            name,
+            str(field.description).rstrip("."),
+            "" if field.is_required() or field.default is None else str(field.default),
+            get_origin(field.annotation) is tuple,
+        )
+        for name, field in kind.model_fields.items()
+        if field.is_required() or name in kind.asked
+    )
 
 
 def libraries_of(board: Board) -> tuple[str, ...]:

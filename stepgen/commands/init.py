@@ -15,14 +15,16 @@ from stepgen.commands.report import say
 from stepgen.devices import boards, find_board
 from stepgen.draft import (
     Draft,
+    Question,
     drive_kinds,
     libraries_of,
     motion_kinds,
     possible_timers,
-    required_fields,
+    questions,
     rests,
     timing_kinds,
 )
+from stepgen.errors import StepgenError
 
 EXAMPLE = (
     "Example: stepgen init fan.yaml --library Fan --board uno --drive four-wire "
@@ -47,6 +49,9 @@ def init(  # noqa: PLR0913 - one parameter for each option
     drive: Annotated[str | None, _option("What drives it.", *drive_kinds())] = None,
     pins: Annotated[str | None, _option("Its pins: 'D4 D5 D6 D7'.")] = None,
     sequence: Annotated[str | None, _option("Its steps: full, wave or half.")] = None,
+    field: Annotated[
+        list[str] | None, _option("A field of the drive: driver=a4988; more than once.")
+    ] = None,
     timing: Annotated[str | None, _option("What paces it.", *timing_kinds())] = None,
     timer: Annotated[int | None, _option("The timer's number.")] = None,
     motion: Annotated[str | None, _option("How it moves.", *motion_kinds())] = None,
@@ -82,6 +87,7 @@ def init(  # noqa: PLR0913 - one parameter for each option
     fields = _given(pins=None if pins is None else pins.split(), sequence=sequence)
     if given.get("drive") is None and "pins" in fields:
         given["drive"] = "four-wire"
+    fields |= dict(_assigned(text) for text in field or ())
     draft = replace(Draft(), **given, drive_fields=tuple(fields.items()))
     wants_answers = sys.stdin.isatty() if ask is None else ask
     draft = _ask(draft, given) if wants_answers else _with_timer(draft, given)
@@ -91,6 +97,19 @@ def init(  # noqa: PLR0913 - one parameter for each option
 
 def _given(**values: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any type
     return {name: value for name, value in values.items() if value is not None}
+
+
+def _assigned(text: str) -> tuple[str, Any]:
+    """
+    Return name and value of ``driver=a4988``.
+
+    Raises:
+        StepgenError: It is no such text.
+    """
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise StepgenError.of("gives no value; write such as --field driver=a4988", text=text[:80])
+    return name.strip(), Question(name).value(value)
 
 
 def _listed(text: str) -> tuple[str, ...]:
@@ -152,12 +171,15 @@ _ANSWERS = {"uses": _uses, "steps_per_turn": _steps}
 
 def _ask_fields(draft: Draft) -> Draft:
     """
-    Ask for what the drive cannot do without.
+    Ask for what the drive needs; an answer that is its default goes without saying.
     """
     fields = dict(draft.drive_fields)
-    for name, what in required_fields(draft.drive).items():
-        if name not in fields:
-            fields[name] = _prompt(what.rstrip("."), "", ()).replace(",", " ").split()
+    for question in questions(draft.drive):
+        if question.name in fields:
+            continue
+        answer = _prompt(question.text, question.default, ())
+        if answer != question.default:
+            fields[question.name] = question.value(answer)
     return replace(draft, drive_fields=tuple(fields.items()))
 
 

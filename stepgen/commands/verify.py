@@ -91,10 +91,10 @@ def _say_report(report: "SpecReport", *, paths: bool) -> None:
         say(
             f"  {name}: {mean}longest step interrupt "
             f"{motor.measured_max} of at most {motor.bound}, "
-            f"up to {motor.max_steps_per_second:.0f} steps/s"
+            f"up to {int(motor.max_steps_per_second)} steps/s"
         )
         for limit in motor.rates[-1:]:
-            say(f"    {limit.steps_per_second:.0f} steps/s are safe {limit.beside}: {limit.cause}")
+            say(f"    {int(limit.steps_per_second)} steps/s are safe {limit.beside}: {limit.cause}")
         for part in motor.longest_path if paths else ():
             say(f"    {part}")
     stack = (

@@ -9,6 +9,7 @@ from math import floor, log10
 
 from stepgen.datasheet.scene import Scene, at
 from stepgen.errors import StepgenError
+from stepgen.library.examples_view import example_speed_sps
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.rates import Clock
 from stepgen.plan.speed_wishes import Wish, plan_wish
@@ -16,7 +17,6 @@ from stepgen.units import MILLISECONDS_PER_SECOND
 
 _WIDTH, _HEIGHT = 400, 168
 _LEFT, _RIGHT, _TOP, _BOTTOM = 48, 14, 18, 34
-_EXAMPLE_SPS = 200  # the speed of the example sketch
 _STEPS_OF_AN_EXAMPLE = 200
 _START_FRACTION = 20
 _RAMP_PERIODS = 40
@@ -57,7 +57,7 @@ def motion_chart(motor: MotorPlan, plan: Plan) -> Chart:
         "ones. stepgen plan works out others."
     )
     if not curves:
-        curves = (_there_and_back(motor),)
+        curves = (_there_and_back(motor, example_speed_sps(plan)),)
         note = (
             "No ramp: the first step comes one interval after the call, at full rate, and the last "
             "one ends the move; take rates at which motor and load can start and stop."
@@ -92,16 +92,15 @@ def _ramps(motor: MotorPlan, plan: Plan) -> tuple[Curve, ...]:
     return tuple(curves)
 
 
-def _there_and_back(motor: MotorPlan) -> Curve:
+def _there_and_back(motor: MotorPlan, speed_sps: int) -> Curve:
     """
-    Return what the example sketch does: one turn, and back.
+    Return what the example Turn does at *speed_sps*: one turn, and back.
     """
     steps = round(motor.steps_per_turn or _STEPS_OF_AN_EXAMPLE)
-    turn_s = steps / _EXAMPLE_SPS
-    corners = ((0, _EXAMPLE_SPS), (turn_s, -_EXAMPLE_SPS), (2 * turn_s, 0))
+    turn_s = steps / speed_sps
+    corners = ((0, speed_sps), (turn_s, -speed_sps), (2 * turn_s, 0))
     call = (
-        f"{motor.name}SetSpeed(MOTOR_CTRL_DRV_EN, "
-        f"motorTimerCalcPerSecond({_EXAMPLE_SPS}), {steps});"
+        f"{motor.name}SetSpeed(MOTOR_CTRL_DRV_EN, motorTimerCalcPerSecond({speed_sps}), {steps});"
     )
     return Curve(f"{steps} steps there, and back", (*corners, (2.1 * turn_s, 0)), call)
 

@@ -36,19 +36,17 @@ class PulseTimes:
 @dataclass(frozen=True)
 class StepDriver:
     """
-    A driver chip, or a module of one.
+    A driver chip, or a module of one; all of them drive the motor while ENABLE is LOW.
 
     Args:
         title: What people call it.
         times: What it asks of its inputs.
         microsteps: Into how many microsteps it can divide a full step.
-        is_active_low: Whether it drives the motor while its enable input is LOW.
     """
 
     title: str
     times: PulseTimes
     microsteps: tuple[int, ...]
-    is_active_low: bool = True
 
 
 DRIVERS: Mapping[str, StepDriver] = MappingProxyType(

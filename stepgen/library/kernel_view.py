@@ -132,8 +132,8 @@ def _pulse_view(kernel: Pulse) -> PulseView:
     backward, forward = _bit_changes(kernel.direction_port.port.name, 1 << kernel.direction.bit)
     legend = (
         f"A step is a pulse on STEP, HIGH for {cycles.high} cycles at least and LOW for "
-        f"{cycles.low} before the next. DIR is written {cycles.setup} cycles before STEP rises, or "
-        f"earlier, and {cycles.hold} after it, or later."
+        f"{cycles.low} before the next. DIR is written at least {cycles.setup} "
+        f"before STEP rises and {cycles.hold} after it."
     )
     return PulseView(
         legend=comment_lines(legend),

@@ -66,17 +66,24 @@ _INT32_MM = _INT32_STATES / 2 / _NM_IN_A_MM
 
 def _top(nanometres: Fraction, f_cpu_hz: int) -> tuple[str, ...]:
     """
-    Return the statements: what does not fit 32 bits is their largest, which is refused as too slow.
+    Return the statements; only 0 gives 0, which stops the motor.
+
+    What does not fit 32 bits is their largest and refused as too slow; less than 1 is 1, too fast.
     """
     clocks = "motorTimerGetIOclocksPerSecond()"
     number, divisor = nanometres.numerator, nanometres.denominator
     if divisor == 1 and f_cpu_hz * number <= _UINT32_MAX:
-        return (f"return speed ? {clocks} * {number}UL / speed : 0;",)
+        return (
+            "if (speed == 0) return 0;",
+            f"const uint32_t top = {clocks} * {number}UL / speed;",
+            "return top ? top : 1;",
+        )
     below = "speed" if divisor == 1 else f"({divisor}ULL * speed)"
     return (
         "if (speed == 0) return 0;",
         f"const uint64_t top = {clocks} * {number}ULL / {below};",
-        "return top > UINT32_MAX ? UINT32_MAX : top;",
+        "if (top > UINT32_MAX) return UINT32_MAX;",
+        "return top ? top : 1;",
     )
 
 

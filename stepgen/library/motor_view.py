@@ -107,7 +107,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         name=motor.name,
         title=motor.name[0].upper() + motor.name[1:],
         summary=summary(motor),
-        wiring=(*wiring(motor, board), *comment_lines(sharing_note(motor, need))),
+        wiring=(*wiring(motor, board), *comment_lines(sharing_note(motor, need, plan))),
         init_comment=init_comment(motor),
         start_comment=start_comment(motor, need, board.f_cpu_hz),
         release_comment=release_comment(need),
@@ -146,7 +146,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         ),
         example_speed_sps=example_speed_sps(plan),
         turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",
-        turn_text="turn" if motor.steps_per_turn else "way of 200 steps",
+        turn_text="One turn" if motor.steps_per_turn else "200 steps",
     )
 
 

@@ -3,7 +3,7 @@ Sentences about a plan, for comments and documents: what is wired where, and who
 """
 
 from stepgen.devices import Board
-from stepgen.library.sharing import Need, sharing_rule
+from stepgen.library.sharing import Need, sharing_rules
 from stepgen.library.text import comment_lines, frequency, listed
 from stepgen.plan.model import MotorPlan, Plan
 
@@ -179,7 +179,7 @@ def takes(plan: Plan) -> tuple[str, ...]:
         f"{_pwm(motor, plan.board)}. {motor.timing.rule}".rstrip()
         for motor in plan.motors
     ]
-    rows.append(sharing_rule(plan))
+    rows.extend(sharing_rules(plan))
     rows.extend(port_rule(motor, plan.board) for motor in plan.motors)
     rows.append("`GPIOR0`, `GPIOR1` and `GPIOR2`, which the Arduino core does not use.")
     return tuple(dict.fromkeys(filter(None, rows)))

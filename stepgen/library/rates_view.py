@@ -31,7 +31,7 @@ def speeds(plan: Plan) -> Iterator[str]:
     """
     for motor in plan.motors:
         *slower, last = plan.rates[motor.name]
-        alone = f" ({slower[0].steps_per_second:.0f} {slower[0].beside})"
+        alone = f" ({int(slower[0].steps_per_second)} {slower[0].beside})"
         shown = alone if slower[0].period_cycles < last.period_cycles else ""
         yield (
             f"`{motor.name}`: up to {int(last.steps_per_second)} steps/s {last.beside}{shown}; "
@@ -54,7 +54,7 @@ def held_rows(plan: Plan) -> Iterator[HeldRow]:
         microseconds = _microseconds(held, plan)
         frame = _lowest_baud(held, plan)
         yield HeldRow(
-            f"{held.steps_per_second:.0f}",
+            f"{int(held.steps_per_second)}",
             f"{int(microseconds)} us",
             str(int(microseconds // _PIXEL_US)),
             f"{frame}" if frame else "none",

@@ -1,5 +1,5 @@
 """
-The view of enables that two stacked shields share: who needs them, and what users must know.
+The view of enables that several drivers share: who needs them, and what users must know.
 """
 
 from dataclasses import dataclass
@@ -48,37 +48,36 @@ def needs_comment(plan: Plan) -> tuple[str, ...]:
     names = _sharers(plan)
     bits = ", ".join(f"{hexadecimal(1 << index)} {name}" for index, name in enumerate(names))
     return comment_lines(
-        f"Which motors need the enables that both shields share, a bit for each: {bits}. The "
-        "enables are HIGH as long as one of them does."
+        f"Which motors need the enables that they share with others, a bit for each: {bits}. "
+        "Enables stay active as long as one of those that share them does."
         if names
         else ""
     )
 
 
-def sharing_note(motor: MotorPlan, need: Need | None) -> str:
+def sharing_note(motor: MotorPlan, need: Need | None, plan: Plan) -> str:
     """
     Return what users of *motor* must know about its enables; empty if they are its own.
     """
     if need is None:
         return ""
     return (
-        f"{_enables(motor)} are the enables of {need.other} too: as long as either motor needs "
-        "current, the coils of both have it, also those of a motor that was released. Call "
-        "ShieldInit() of both before either moves."
+        f"{_enables(motor)} for {need.other} too: as long as one of these motors needs current, "
+        "the coils of all have it, also those of one that was released. Call "
+        f"{listed([f'{name}ShieldInit()' for name in _with_its_enables(motor, plan)])} before any "
+        "of them moves."
     )
 
 
-def sharing_rule(plan: Plan) -> str:
+def sharing_rules(plan: Plan) -> tuple[str, ...]:
     """
-    Return the same for the whole library; empty if no enables are shared.
+    Return the same for the whole library, a rule for each group of motors with the same enables.
     """
-    names = _sharers(plan)
-    if not names:
-        return ""
-    first = next(motor for motor in plan.motors if motor.name in names)
-    return (
-        f"{_enables(first)} are the enables of both shields: as long as {listed(names, 'or')} "
-        "needs current, the coils of both have it, also those of a motor that was released."
+    groups = {motor.drive.released: motor for motor in plan.motors if motor.drive.shared_enables}
+    return tuple(
+        f"{_enables(motor)} for {listed(_with_its_enables(motor, plan))}: as long as one of these "
+        "motors needs current, the coils of all have it, also those of one that was released."
+        for motor in groups.values()
     )
 
 
@@ -91,4 +90,5 @@ def _sharers(plan: Plan) -> list[str]:
 
 
 def _enables(motor: MotorPlan) -> str:
-    return listed([wire.pin.label for wire in motor.drive.enables])
+    labels = [wire.pin.label for wire in motor.drive.enables]
+    return f"{listed(labels)} {'is the enable' if len(labels) == 1 else 'are the enables'}"

@@ -161,7 +161,7 @@ def _constants(plan: Plan) -> tuple[Named, ...]:
     f_cpu = plan.board.f_cpu_hz
     shortest, longest = plan.minimum_period_cycles, plan.largest_period_cycles
     return (
-        Named("MOTOR_MIN_TOP", f"{shortest}UL", f"{f_cpu / shortest:.0f} steps/s"),
+        Named("MOTOR_MIN_TOP", f"{shortest}UL", f"{f_cpu // shortest} steps/s"),
         Named(
             "MOTOR_MAX_TOP",
             f"{longest}UL",

@@ -9,15 +9,13 @@ from collections.abc import Iterable
 from typing import Any
 
 from stepgen.lint.library import Library
-from stepgen.lint.rules import RuleBook
+from stepgen.lint.rules import Places, RuleBook
 
 DOCUMENTS = RuleBook()
 KEYWORDS = "keywords.txt"
 MANIFEST = "library.json"
 _TYPES = {"KEYWORD1", "KEYWORD2", "KEYWORD3", "LITERAL1", "LITERAL2"}
 _MANIFEST_FIELDS = ("name", "version", "description")
-
-Places = Iterable[tuple[str, str]]
 
 
 def _keyword_lines(library: Library) -> Iterable[tuple[str, str]]:
@@ -37,8 +35,10 @@ def _tabs(library: Library) -> Places:
     for place, line in _keyword_lines(library):
         if "\t" not in line:
             yield place, "no tab divides the name from its type, so the IDE shows no colour"
-        elif "\t\t" in line.rstrip("\t") or " " in line.rstrip():
+        elif "\t\t" in line.rstrip("\t"):
             yield place, "the name and its type are divided by more than one tab"
+        elif " " in line.rstrip():
+            yield place, "there is a blank beside the tab"
 
 
 @DOCUMENTS.rule("LK003", "types of keywords", f"write one of {', '.join(sorted(_TYPES))}")

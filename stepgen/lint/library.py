@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from stepgen.lint.folder import Folder
 
 PROPERTIES = "library.properties"
+LONGEST_NAME = 63
+"""Characters that the name of a library, a folder or a sketch may have."""
 
 
 @dataclass(frozen=True)

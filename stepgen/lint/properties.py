@@ -5,24 +5,15 @@ Rules of library.properties (Arduino library specification, "library.properties 
 import re
 from collections.abc import Iterable
 from pathlib import PurePosixPath
+from typing import get_args
 from urllib.parse import urlsplit
 
-from stepgen.lint.library import PROPERTIES, Library
-from stepgen.lint.rules import RuleBook
+from stepgen.lint.library import LONGEST_NAME, PROPERTIES, Library
+from stepgen.lint.rules import Places, RuleBook
+from stepgen.spec.model import Category
 
 METADATA = RuleBook()
-CATEGORIES = (
-    "Display",
-    "Communication",
-    "Signal Input/Output",
-    "Sensors",
-    "Device Control",
-    "Timing",
-    "Data Storage",
-    "Data Processing",
-    "Other",
-)
-_LONGEST_NAME = 63
+CATEGORIES = get_args(Category)
 _RECOMMENDED_NAME = 32
 _OPTIONAL = ("depends", "dot_a_linkage", "includes", "precompiled", "ldflags", "architectures")
 _FIELDS = (
@@ -37,8 +28,6 @@ _RELAXED = re.compile(rf"{_NUMBER}(\.{_NUMBER}){{0,2}}(-{_LABEL})?(\+{_LABEL})?"
 _ALIASES = {"atmelavr": "avr", "atmelsam": "sam", "espressif8266": "esp8266", "ststm32": "stm32"}
 _ARCHITECTURES = ("avr", "megaavr", "sam", "samd", "mbed", "esp8266", "esp32", "stm32", "renesas")
 _CONSTRAINT = re.compile(r"!?\(*\s*(<|<=|=|>=|>|\^|~)\s*\d+(\.\d+){0,2}[^<>=^~]*\)*")
-
-Places = Iterable[tuple[str, str]]
 
 
 @METADATA.rule("LP005", "lines are fields", "write key=value, or # before a comment")
@@ -85,14 +74,14 @@ _fill("LP008", "name", "write the library's name")
 
 @METADATA.rule("LP009", "length of the name", "shorten it to 63 characters or fewer")
 def _name_length(library: Library) -> Places:
-    if len(library.fields.get("name", "")) > _LONGEST_NAME:
+    if len(library.fields.get("name", "")) > LONGEST_NAME:
         yield library.place("name"), f"the name has {len(library.fields['name'])} characters"
 
 
 @METADATA.rule("LP010", "recommended length of the name", "shorten it to 32 characters or fewer")
 def _name_recommended(library: Library) -> Places:
     length = len(library.fields.get("name", ""))
-    if _RECOMMENDED_NAME < length <= _LONGEST_NAME:
+    if _RECOMMENDED_NAME < length <= LONGEST_NAME:
         yield library.place("name"), f"the name has {length} characters"
 
 

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 
 from stepgen.lint.library import Library
 
-Check = Callable[[Library], Iterable[tuple[str, str]]]
-"""Yields where a rule is broken, ``file`` or ``file:line`` inside the folder, and what is wrong."""
+Places = Iterable[tuple[str, str]]
+"""Where a rule is broken, ``file`` or ``file:line`` inside the folder, and what is wrong."""
+
+Check = Callable[[Library], Places]
+"""Finds where a rule is broken."""
 
 
 @dataclass(frozen=True)

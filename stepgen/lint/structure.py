@@ -3,18 +3,16 @@ Rules of a library's folders and files (Arduino library specification, "Layout o
 """
 
 import re
-from collections.abc import Iterable
 
-from stepgen.lint.library import PROPERTIES, Library
-from stepgen.lint.rules import RuleBook
+from stepgen.lint.folder import HEADER_SUFFIXES, SKETCH_SUFFIXES
+from stepgen.lint.library import LONGEST_NAME, PROPERTIES, Library
+from stepgen.lint.rules import Places, RuleBook
 
 STRUCTURE = RuleBook()
-_LONGEST_NAME = 63
+_SOURCES = HEADER_SUFFIXES | SKETCH_SUFFIXES | {".c", ".cpp"}
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 _LICENSES = re.compile(r"(?i)(licen[cs]e|copying)(\.(md|txt|rst))?")
 _READMES = re.compile(r"(?i)readme(\.(md|markdown|mdown|txt|rst|adoc))?")
-
-Places = Iterable[tuple[str, str]]
 
 
 @STRUCTURE.rule("LS001", "a library has a header", "put NAME.h into the folder src")
@@ -25,7 +23,7 @@ def _header(library: Library) -> Places:
 
 @STRUCTURE.rule("LS002", "length of the folder's name", "shorten it to 63 characters or fewer")
 def _folder_length(library: Library) -> Places:
-    if len(library.folder.name) > _LONGEST_NAME:
+    if len(library.folder.name) > LONGEST_NAME:
         yield ".", f"the folder's name has {len(library.folder.name)} characters"
 
 
@@ -127,7 +125,7 @@ def _one_properties(library: Library) -> Places:
 def _arduino_h(library: Library) -> Places:
     include = re.compile(r'\s*#\s*include\s*[<"](arduino\.h)[>"]', re.IGNORECASE)
     for file in library.folder.files:
-        if file.suffix not in {".h", ".hpp", ".c", ".cpp", ".ino"}:
+        if file.suffix not in _SOURCES:
             continue
         for number, line in enumerate(library.folder.lines(file) or (), start=1):
             match = include.match(line)
@@ -197,7 +195,7 @@ def _pde(library: Library) -> Places:
 )
 def _sketch_characters(library: Library) -> Places:
     for sketch in library.folder.sketches:
-        if not _NAME.fullmatch(sketch.name) or len(sketch.stem) > _LONGEST_NAME:
+        if not _NAME.fullmatch(sketch.name) or len(sketch.stem) > LONGEST_NAME:
             yield str(sketch), "the IDE refuses this name, or it is longer than 63 characters"
 
 

@@ -7,8 +7,9 @@ comparator works all the time, and sets OCF2A with the tick after TCNT2 has beco
 
 from stepgen.devices import Mcu, Timer8
 from stepgen.plan.instructions import Gate, Instruction, Storage
+from stepgen.plan.instructions import total_cycles as cycles
 
-_TICK_CYCLES = 8
+PRESCALER = 8
 _LATE_TICKS = 127  # the next match is 128 ticks after this one, or more; OCR2A must be moved before
 _FIELDS = (
     ("laps", "now.laps"),
@@ -29,20 +30,23 @@ def gate(timer: Timer8, storage: Storage, mcu: Mcu) -> Gate:
     """
     count, leave, high, last, step = _count(), _leave(storage, mcu), _high(), _last(), _step()
     late_last, late_step = _late_last(), _late_step()
-    until_high = _cycles(count) + 1  # the branch is taken
-    until_step = until_high + _cycles(high)
+    until_high = cycles(count) + 1  # the branch is taken
+    until_step = until_high + cycles(high)
     until_last = until_step - 1
-    until_read = until_step + _cycles(step[:2]) + 1  # LDS reads in its second cycle
+    until_read = until_step + cycles(step[:2]) + 1  # LDS reads in its second cycle
     # The longest way: a step that is made in place of the last lap, so late that a lap has passed.
-    seen_late = _cycles(_lateness("")) + 1
-    both_late = _cycles(late_last) + seen_late + _cycles(late_step) + _cycles(step[-2:])
-    latest = until_last + _cycles(last[:2]) + seen_late + both_late
+    seen_late = cycles(_lateness("")) + 1
+    both_late = cycles(late_last) + seen_late + cycles(late_step) + cycles(step[-2:])
+    latest = until_last + cycles(last[:2]) + seen_late + both_late
     return Gate(
         instructions=(*count, *leave, *high, *last, *late_last, *late_step, *step),
-        step_cycles=until_step + _cycles(step),
-        lap_cycles=(_cycles(count) + _cycles(leave), until_last + _cycles(last) + _cycles(leave)),
-        late_cycles=latest - until_step - _cycles(step),
-        overrun_cycles=(_LATE_TICKS - 1) * _TICK_CYCLES - until_read,
+        step_cycles=until_step + cycles(step),
+        lap_cycles=(
+            cycles(count) + cycles(leave),
+            until_last + cycles(last) + cycles(leave),
+        ),
+        late_cycles=latest - until_step - cycles(step),
+        overrun_cycles=(_LATE_TICKS - 1) * PRESCALER - until_read,
         registers=(("ocr", timer.ocra), ("tcnt", timer.tcnt), ("tifr", timer.tifr)),
         fields=_FIELDS,
         constants=(("match", f"_BV(OCF{timer.number}A)"), ("statMissed", "MOTOR_STAT_MISSED")),
@@ -201,7 +205,3 @@ def _copy(source: str, target: str, note: str = "", label: str = "") -> tuple[In
         Instruction(f"lds   r24, %[{source}]", 2, note, label=label),
         Instruction(f"sts   %[{target}], r24", 2),
     )
-
-
-def _cycles(instructions: tuple[Instruction, ...]) -> int:
-    return sum(instruction.cycles for instruction in instructions)

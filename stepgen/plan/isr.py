@@ -121,7 +121,7 @@ def compose(
     )
     think = (
         Instruction("lds   r24, %[mode]", 2, "here the count is 0", label="1"),
-        Instruction("sbrc  r24, %[think]", 2, "a millisecond limit or the end of a move:"),
+        Instruction("sbrc  r24, %[think]", 2, "an end may be due:"),
         Instruction("rjmp  2f", 0, "think before the step"),
     )
     out = (

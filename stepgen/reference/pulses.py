@@ -81,9 +81,7 @@ def pulse_facts(drive: Any, f_cpu_hz: int) -> PulseFacts:  # noqa: ANN401 - a st
             nanoseconds = round(given * 1000)
         return -(-nanoseconds * f_cpu_hz // _NS_IN_A_SECOND)
 
-    is_low = known.is_active_low if known else True
-    if drive.enable and drive.enable.active:
-        is_low = drive.enable.active == "low"
+    is_low = not drive.enable or drive.enable.active != "high"
     high = at_least("step_high")
     return PulseFacts(
         high=high,

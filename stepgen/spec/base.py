@@ -5,7 +5,7 @@ What all parts of a spec have in common: strict models, and kinds found by their
 import pkgutil
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 
@@ -25,8 +25,12 @@ class SpecModel(BaseModel):
 class KindModel(SpecModel):
     """
     One kind of drive, timing or motion; subclasses pin ``kind`` to their own name.
+
+    *asked* are fields of which some are needed though each has a default: a first spec asks for
+    them too.
     """
 
+    asked: ClassVar[tuple[str, ...]] = ()
     kind: str
 
 

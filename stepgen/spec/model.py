@@ -49,7 +49,7 @@ _MOST_MOTORS = 16  # no chip has as many timers; more would only make reports lo
 _LONGEST_ISR_CYCLES = 1_000_000  # a sixteenth of a second
 SHORT_FORMS = {"timer": "timing", "pins": "drive", "sequence": "drive"}
 _DEFAULT_KINDS = {"timing": "fast-pwm", "motion": "constant"}
-_CATEGORIES = Literal[
+Category = Literal[
     "Display",
     "Communication",
     "Signal Input/Output",
@@ -95,7 +95,7 @@ class Library(SpecModel):
     """What follows the sentence there."""
     url: Url = "https://docs.arduino.cc/libraries/"
     """The address of a page about the library."""
-    category: _CATEGORIES = "Device Control"
+    category: Category = "Device Control"
     """Where the library manager lists it."""
 
     @model_validator(mode="after")

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from stepgen import api
-from stepgen.draft import Draft, drive_kinds, possible_timers, required_fields
+from stepgen.draft import Draft, drive_kinds, possible_timers, questions
 
 Stepgen = Callable[..., Any]
 
@@ -124,12 +124,47 @@ def test_an_unanswered_question_writes_nothing(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+ANSWERS = {
+    "four-wire": ["4 5 6 7"],
+    "motor-shield": [],
+    "step-dir": ["a4988", "cnc-shield X", "", "", "", "16"],
+}
+
+
 @pytest.mark.parametrize("drive", drive_kinds())
-def test_each_drive_has_questions_for_what_it_needs(drive: str) -> None:
+def test_a_spec_with_each_drive_can_be_asked_for(drive: str, tmp_path: Path) -> None:
     """
-    A drive with a field that has no default is asked for it, with what it is for.
+    The questions of a drive say what they are for, and are enough for a spec that is fine.
     """
-    assert all(what and what != "None" for what in required_fields(drive).values())
+    assert all(question.text and question.text != "None" for question in questions(drive))
+    answers = ["Fan", "uno", "", "fan", drive, *ANSWERS[drive], "", "", "", ""]
+    done = subprocess.run(
+        [sys.executable, "-m", "stepgen", "init", "--ask", "fan.yaml"],
+        cwd=tmp_path,
+        input="\n".join(answers) + "\n",
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+        timeout=300,
+    )
+
+    assert done.returncode == 0, done.stderr
+    assert api.plan(tmp_path / "fan.yaml").motors[0].drive.kind == drive
+
+
+def test_fields_of_a_drive_are_options_too(stepgen: Stepgen, tmp_path: Path) -> None:
+    """
+    What has no option of its own is given by its name in the spec.
+    """
+    run = stepgen(
+        *("init", "a.yaml", "--drive", "step-dir", "--field", "driver=drv8825"),
+        *("--field", "step=D2", "--field", "dir=D5", "--field", "microsteps=32"),
+        *("--at-rest", "hold"),
+    )
+
+    assert run.code == 0, run.err
+    assert api.plan(tmp_path / "a.yaml").motors[0].steps_per_turn == 6400
+    assert stepgen("init", "b.yaml", "--field", "driver").code == 2
 
 
 def test_only_valid_timers_are_offered() -> None:

@@ -1,8 +1,8 @@
 """
-The independent sources that device facts are checked against: avr-libc and the Arduino core.
+A plan of a spec's text, and the independent sources that device facts are checked against.
 
-Each fixture asks the compiler, so that no header is read by guesswork; a missing compiler or
-a missing Arduino core fails the tests.
+These are avr-libc and the Arduino core. Each fixture asks the compiler, so that no header is read
+by guesswork; a missing compiler or a missing Arduino core fails the tests.
 """
 
 import re
@@ -15,6 +15,9 @@ from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import Symbol, SymbolTableSection
 
 from stepgen.devices import Board, Mcu, boards, find_board
+from stepgen.plan.model import Plan
+from stepgen.plan.planner import make_plan
+from stepgen.spec import load_spec
 
 ARDUINO_AVR = Path("/usr/share/arduino/hardware/arduino/avr")
 
@@ -231,3 +234,17 @@ def boards_txt() -> dict[str, str]:
     """
     lines = (ARDUINO_AVR / "boards.txt").read_text(encoding="utf-8").splitlines()
     return dict(line.split("=", 1) for line in lines if "=" in line and not line.startswith("#"))
+
+
+@pytest.fixture
+def planned(tmp_path: Path) -> Callable[[str], Plan]:
+    """
+    Return a function that plans a spec from its text, all but the name of the library.
+    """
+
+    def plan(text: str) -> Plan:
+        path = tmp_path / "spec.yaml"
+        path.write_text(f"library: Mine\n{text}", encoding="utf-8")
+        return make_plan(load_spec(path))
+
+    return plan

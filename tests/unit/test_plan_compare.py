@@ -3,33 +3,16 @@ Timing compare: which timer it takes, how fast it may be, and what it does on th
 """
 
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
 from stepgen.errors import StepgenError
 from stepgen.plan.instructions import Gate
 from stepgen.plan.model import Plan
-from stepgen.plan.planner import make_plan
 from stepgen.plan.timings.compare import LONGEST_OVERRUN_CYCLES, LONGEST_WAIT_CYCLES
-from stepgen.spec import load_spec
 
 Planner = Callable[[str], Plan]
 SHIELD = "{drive: motor-shield, timing: compare}"
-
-
-@pytest.fixture
-def planned(tmp_path: Path) -> Planner:
-    """
-    Return a function that plans a spec from its text.
-    """
-
-    def plan(text: str) -> Plan:
-        path = tmp_path / "spec.yaml"
-        path.write_text(f"library: Mine\n{text}", encoding="utf-8")
-        return make_plan(load_spec(path))
-
-    return plan
 
 
 @pytest.mark.parametrize("timing", ["compare", "{kind: compare, timer: 2}"])

@@ -12,27 +12,12 @@ from stepgen.errors import Fault, StepgenError
 from stepgen.plan.claims import Claim, report_conflicts
 from stepgen.plan.faults import Faults
 from stepgen.plan.model import Plan
-from stepgen.plan.planner import make_plan
 from stepgen.spec import load_spec
 
 Planner = Callable[[str], Plan]
 Faulty = Callable[[str], tuple[Fault, ...]]
 
 _FREE_UNO = "{drive: {kind: four-wire, pins: [D4, D5, D6, D7]}}"
-
-
-@pytest.fixture
-def planned(tmp_path: Path) -> Planner:
-    """
-    Return a function that plans a spec from its text.
-    """
-
-    def plan(text: str) -> Plan:
-        path = tmp_path / "spec.yaml"
-        path.write_text(f"library: Mine\n{text}", encoding="utf-8")
-        return make_plan(load_spec(path))
-
-    return plan
 
 
 @pytest.fixture

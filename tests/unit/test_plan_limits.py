@@ -4,33 +4,16 @@ The highest safe rates of a plan, what the sketch wishes for, and stretches with
 
 from collections.abc import Callable
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 
 from stepgen.devices import INTERRUPTS, MILLIS
 from stepgen.plan.model import Plan
-from stepgen.plan.planner import make_plan
 from stepgen.plan.warnings import plan_warnings
-from stepgen.spec import load_spec
 
 Planner = Callable[[str], Plan]
 SHIELD = "drive: motor-shield, timer: 1"
 FAST_PWM_FLOOR = 640  # system 1: 25 000 steps/s at 16 MHz
-
-
-@pytest.fixture
-def planned(tmp_path: Path) -> Planner:
-    """
-    Return a function that plans a spec from its text.
-    """
-
-    def plan(text: str) -> Plan:
-        path = tmp_path / "spec.yaml"
-        path.write_text(f"library: Mine\n{text}", encoding="utf-8")
-        return make_plan(load_spec(path))
-
-    return plan
 
 
 def one(planned: Planner, motor: str, uses: str = "", board: str = "uno") -> Plan:

@@ -3,16 +3,14 @@ What else the sketch uses (``uses``): what it takes, and conflicts of motors wit
 """
 
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
 from stepgen.devices import Board
 from stepgen.errors import Fault, StepgenError
 from stepgen.plan.model import Plan
-from stepgen.plan.planner import free_timers, make_plan
+from stepgen.plan.planner import free_timers
 from stepgen.plan.uses import read_uses
-from stepgen.spec import load_spec
 
 Planner = Callable[[str], Plan]
 Faulty = Callable[[str], tuple[Fault, ...]]
@@ -20,20 +18,6 @@ Faulty = Callable[[str], tuple[Fault, ...]]
 _FREE_MEGA = "{drive: {kind: four-wire, pins: [A8, A9, A10, A11]}}"
 _FREE_UNO = "{drive: {kind: four-wire, pins: [D4, D5, D6, D7]}}"
 _UNO_TIMER_1 = "{drive: {kind: four-wire, pins: [D4, D5, D6, D7]}, timer: 1}"
-
-
-@pytest.fixture
-def planned(tmp_path: Path) -> Planner:
-    """
-    Return a function that plans a spec from its text.
-    """
-
-    def plan(text: str) -> Plan:
-        path = tmp_path / "spec.yaml"
-        path.write_text(f"library: Mine\n{text}", encoding="utf-8")
-        return make_plan(load_spec(path))
-
-    return plan
 
 
 @pytest.fixture

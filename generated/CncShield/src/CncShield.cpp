@@ -145,14 +145,14 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses) {
   return motorPulses ? motorTimerGetIOclocksPerSecond() / motorPulses : 0;
 }
 
-// Which motors need the enables that both shields share, a bit for each: 0x01 x, 0x02 y. The
-// enables are HIGH as long as one of them does.
+// Which motors need the enables that they share with others, a bit for each: 0x01 x, 0x02 y.
+// Enables stay active as long as one of those that share them does.
 static uint8_t enablesNeeded;
 
 // ---- x: A4988, 1/16 steps, timer 1 ----
 
 // A step is a pulse on STEP, HIGH for 16 cycles at least and LOW for 16 before the next. DIR is
-// written 4 cycles before STEP rises, or earlier, and 4 after it, or later.
+// written at least 4 before STEP rises and 4 after it.
 
 static ConstantMotion xMotion;
 
@@ -192,7 +192,7 @@ SHARED uint32_t xPosition() {
   return motion.target + (motion.mode & kReverse ? left : -left);
 }
 
-// Lets the current of the present phase flow. Only while interrupts are off.
+// Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void xEnergise() {
   enablesNeeded |= 0x01;
   PORTB &= 0xFE;  // ENABLE
@@ -262,7 +262,7 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
       "   reti                           \n"  // 4
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   sbi   %[port0], 2              \n"  // 2  STEP rises: one step
       "   ldi   r24, 4                   \n"  // 1  STEP stays HIGH
@@ -484,7 +484,7 @@ int8_t xRelease() { return xSetCoils(false); }
 // ---- y: TMC2209, 1/8 steps, timer 2 ----
 
 // A step is a pulse on STEP, HIGH for 2 cycles at least and LOW for 2 before the next. DIR is
-// written 1 cycles before STEP rises, or earlier, and 1 after it, or later.
+// written at least 1 before STEP rises and 1 after it.
 
 static CompareConstantMotion yMotion;
 static uint8_t yCount;  // step interrupts until the next boundary
@@ -524,7 +524,7 @@ SHARED uint32_t yPosition() {
   return motion.target + (motion.mode & kReverse ? left : -left);
 }
 
-// Lets the current of the present phase flow. Only while interrupts are off.
+// Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void yEnergise() {
   enablesNeeded |= 0x02;
   PORTB &= 0xFE;  // ENABLE
@@ -666,7 +666,7 @@ ISR(TIMER2_COMPA_vect, ISR_NAKED) {
       "   reti                           \n"  // 4
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   sbi   %[port0], 3              \n"  // 2  STEP rises: one step
       "   cbi   %[port0], 3              \n"  // 2  STEP falls

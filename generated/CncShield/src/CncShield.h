@@ -31,16 +31,16 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it lets go
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
 constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in milliseconds, not in steps
-constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
+constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward: the position counts down
 
 // Status bits of the ReadStatus functions.
 constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // something was refused; a start clears it
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;  // because a speed is out of range
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;          // at the end point, or stopped
 constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;       // running at a speed that stays
-constexpr uint8_t MOTOR_STAT_MISSED = 0x80;           // a step came too late: see ReadMissed
+constexpr uint8_t MOTOR_STAT_MISSED = 0x80;           // a step came too late: see ReadMissed; a start clears it
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed, above 0 a warning.
 constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // below MOTOR_MIN_TOP
@@ -70,8 +70,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of ports B and D with digitalWrite(), with single-bit sbi/cbi,
 // or inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
-// D8 are the enables of y too: as long as either motor needs current, the coils of both have it,
-// also those of a motor that was released. Call ShieldInit() of both before either moves.
+// D8 is the enable for y too: as long as one of these motors needs current, the coils of all have
+// it, also those of one that was released. Call xShieldInit() and yShieldInit() before any of them
+// moves.
 
 // Steps for whole turns: 3200 in each.
 constexpr uint32_t xStepsForTurns(uint16_t turns) {
@@ -125,8 +126,9 @@ int8_t xRelease();
 // interrupts and stretches with interrupts off. A step that waits longer is made late and counted,
 // MOTOR_STAT_MISSED is set, and the next one is on time again; but after more than 1900 clocks a
 // step and all that follow it can come 2048 clocks late, and nothing tells.
-// D8 are the enables of x too: as long as either motor needs current, the coils of both have it,
-// also those of a motor that was released. Call ShieldInit() of both before either moves.
+// D8 is the enable for x too: as long as one of these motors needs current, the coils of all have
+// it, also those of one that was released. Call xShieldInit() and yShieldInit() before any of them
+// moves.
 
 // Steps for whole turns: 1600 in each.
 constexpr uint32_t yStepsForTurns(uint16_t turns) {
@@ -156,8 +158,8 @@ int8_t ySetSpeed(
 uint8_t yReadStatus();
 
 // How many steps came more than 970 clocks late since yShieldInit(), because their
-// interrupt was held up. None of them is lost, and those after them come on time. The coils going
-// off at the end of a move counts as a step. It wraps at 16 bits.
+// interrupt was held up. Up to 1900 clocks none of them is lost, and those after them come on time. An
+// interrupt that ends a move in place of a step counts as one. It wraps at 16 bits.
 uint16_t yReadMissed();
 
 // Where the motor is: 0 after yShieldInit(), +1 for each step,

@@ -31,9 +31,9 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it lets go
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
 constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in milliseconds, not in steps
-constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
+constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward: the position counts down
 
 // Status bits of the ReadStatus functions.
 constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // something was refused; a start clears it
@@ -49,7 +49,7 @@ constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops
 
 // The range of a virtual timer TOP: I/O clocks between two steps.
-constexpr uint32_t MOTOR_MIN_TOP = 2416UL;  // 6623 steps/s
+constexpr uint32_t MOTOR_MIN_TOP = 2416UL;  // 6622 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 4.19 s
 
 // I/O clocks in a second: 16 MHz, divided as CLKPR says at the moment. After a

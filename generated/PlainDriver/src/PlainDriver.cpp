@@ -118,7 +118,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses) {
 // ---- motor: DRV8825, 1/32 steps, timer 1 ----
 
 // A step is a pulse on STEP, HIGH for 31 cycles at least and LOW for 31 before the next. DIR is
-// written 11 cycles before STEP rises, or earlier, and 11 after it, or later.
+// written at least 11 before STEP rises and 11 after it.
 
 static VariableMotion motorMotion;
 
@@ -225,7 +225,7 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
       "   reti                           \n"  // 4
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   sbi   %[port0], 1              \n"  // 2  STEP rises: one step
       "   ldi   r24, 9                   \n"  // 1  STEP stays HIGH
@@ -441,7 +441,6 @@ INLINE void motorStart() {
   if (before & kRunning) {
     motorTakeOver();
   } else {
-
     motorRunTimer(0);
     TIMSK1 = _BV(TOIE1);
   }

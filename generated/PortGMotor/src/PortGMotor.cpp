@@ -146,7 +146,7 @@ SHARED uint32_t motorPosition() {
   return motion.target + (motion.mode & kReverse ? left : -left);
 }
 
-// Lets the current of the present phase flow. Only while interrupts are off.
+// Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void motorEnergise() {
   motorShow(motorPosition());
 }
@@ -214,7 +214,7 @@ ISR(TIMER3_OVF_vect, ISR_NAKED) {
       "   reti                           \n"  // 5
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   in    r24, %[state]            \n"  // 1  whose turn it is
       "   out   %[port0], r24            \n"  // 1  ones written to PINx toggle

@@ -111,7 +111,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses) {
 // ---- z: A4988, 1/16 steps, timer 5 ----
 
 // A step is a pulse on STEP, HIGH for 16 cycles at least and LOW for 16 before the next. DIR is
-// written 4 cycles before STEP rises, or earlier, and 4 after it, or later.
+// written at least 4 before STEP rises and 4 after it.
 
 static ConstantMotion zMotion;
 
@@ -149,7 +149,7 @@ SHARED uint32_t zPosition() {
   return motion.target + (motion.mode & kReverse ? left : -left);
 }
 
-// Lets the current of the present phase flow. Only while interrupts are off.
+// Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void zEnergise() {
   PORTK &= 0xFE;  // ENABLE
 }
@@ -224,7 +224,7 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
       "   reti                           \n"  // 5
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   lds   r24, %[port0]            \n"  // 2
       "   ori   r24, 0x08                \n"  // 1  the port's other bits stay
@@ -443,7 +443,9 @@ int8_t zHold() { return zSetCoils(true); }
 int8_t zRelease() { return zSetCoils(false); }
 
 uint32_t zTimerCalcNanometresPerSecond(uint32_t speed) {
-  return speed ? motorTimerGetIOclocksPerSecond() * 250UL / speed : 0;
+  if (speed == 0) return 0;
+  const uint32_t top = motorTimerGetIOclocksPerSecond() * 250UL / speed;
+  return top ? top : 1;
 }
 
 int32_t zReadNanometres() {

@@ -109,8 +109,8 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses) {
   return motorPulses ? motorTimerGetIOclocksPerSecond() / motorPulses : 0;
 }
 
-// Which motors need the enables that both shields share, a bit for each: 0x01 lower, 0x02 upper.
-// The enables are HIGH as long as one of them does.
+// Which motors need the enables that they share with others, a bit for each: 0x01 lower, 0x02
+// upper. Enables stay active as long as one of those that share them does.
 static uint8_t enablesNeeded;
 
 // ---- lower: Arduino Motor Shield (L298), full steps, timer 1 ----
@@ -164,7 +164,7 @@ SHARED uint32_t lowerPosition() {
   return motion.target + (motion.mode & kReverse ? left : -left);
 }
 
-// Lets the current of the present phase flow. Only while interrupts are off.
+// Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void lowerEnergise() {
   lowerShow();
   enablesNeeded |= 0x01;
@@ -245,7 +245,7 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
       "   reti                           \n"  // 5
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   push  r30                      \n"  // 2
       "   push  r31                      \n"  // 2
@@ -525,7 +525,7 @@ SHARED uint32_t upperPosition() {
   return motion.target + (motion.mode & kReverse ? left : -left);
 }
 
-// Lets the current of the present phase flow. Only while interrupts are off.
+// Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void upperEnergise() {
   upperShow();
   enablesNeeded |= 0x02;
@@ -606,7 +606,7 @@ ISR(TIMER3_OVF_vect, ISR_NAKED) {
       "   reti                           \n"  // 5
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   push  r30                      \n"  // 2
       "   push  r31                      \n"  // 2

@@ -32,9 +32,9 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it lets go
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
 constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in milliseconds, not in steps
-constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
+constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward: the position counts down
 
 // Status bits of the ReadStatus functions.
 constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // something was refused; a start clears it
@@ -50,7 +50,7 @@ constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops
 
 // The range of a virtual timer TOP: I/O clocks between two steps.
-constexpr uint32_t MOTOR_MIN_TOP = 791UL;  // 20228 steps/s
+constexpr uint32_t MOTOR_MIN_TOP = 791UL;  // 20227 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 4.19 s
 
 // I/O clocks in a second: 16 MHz, divided as CLKPR says at the moment. After a
@@ -71,8 +71,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of ports B and E with digitalWrite(), with single-bit sbi/cbi,
 // or inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D11, D12 or D13.
-// D3 and D11 are the enables of upper too: as long as either motor needs current, the coils of both
-// have it, also those of a motor that was released. Call ShieldInit() of both before either moves.
+// D3 and D11 are the enables for upper too: as long as one of these motors needs current, the coils
+// of all have it, also those of one that was released. Call lowerShieldInit() and upperShieldInit()
+// before any of them moves.
 
 // Steps for whole turns: 200 in each.
 constexpr uint32_t lowerStepsForTurns(uint16_t turns) {
@@ -124,8 +125,9 @@ int8_t lowerRelease();
 // or inside ATOMIC_BLOCK. The sketch may change other bits of port H with digitalWrite() or inside
 // ATOMIC_BLOCK.
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
-// D3 and D11 are the enables of lower too: as long as either motor needs current, the coils of both
-// have it, also those of a motor that was released. Call ShieldInit() of both before either moves.
+// D3 and D11 are the enables for lower too: as long as one of these motors needs current, the coils
+// of all have it, also those of one that was released. Call lowerShieldInit() and upperShieldInit()
+// before any of them moves.
 
 // Steps for whole turns: 200 in each.
 constexpr uint32_t upperStepsForTurns(uint16_t turns) {

@@ -32,7 +32,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it lets go
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
 constexpr uint8_t MOTOR_CTRL_SPEED_VARIABLE = 0x40;   // update events change the speed
 constexpr uint8_t MOTOR_CTRL_VARIABLE_PWR = 0x20;     // each halves (FASTER) or doubles the next
 constexpr uint8_t MOTOR_CTRL_IRQ_TIMING = 0x10;       // the step interrupt applies them
@@ -40,7 +40,7 @@ constexpr uint8_t MOTOR_CTRL_UPDATE_STEPS = 0x08;     // timerUpd_ms counts step
 constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in milliseconds, not in steps
 constexpr uint8_t MOTOR_CTRL_FASTER = 0x02;           // events shorten the interval
 constexpr uint8_t MOTOR_CTRL_SLOWER = 0x00;           // they lengthen it: for readers
-constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
+constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward: the position counts down
 
 // Status bits of the ReadStatus functions.
 constexpr uint8_t MOTOR_STAT_FAULT = 0x01;             // something was refused; a start clears it
@@ -81,8 +81,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of ports B and E with digitalWrite(), with single-bit sbi/cbi,
 // or inside ATOMIC_BLOCK.
 // Timer 4 belongs to the motor: no analogWrite() on D6, D7 or D8.
-// D3 and D11 are the enables of upper too: as long as either motor needs current, the coils of both
-// have it, also those of a motor that was released. Call ShieldInit() of both before either moves.
+// D3 and D11 are the enables for upper too: as long as one of these motors needs current, the coils
+// of all have it, also those of one that was released. Call lowerShieldInit() and upperShieldInit()
+// before any of them moves.
 
 // Steps for whole turns: 200 in each.
 constexpr uint32_t lowerStepsForTurns(uint16_t turns) {
@@ -134,8 +135,9 @@ int8_t lowerRelease();
 // or inside ATOMIC_BLOCK. The sketch may change other bits of port H with digitalWrite() or inside
 // ATOMIC_BLOCK.
 // Timer 5 belongs to the motor: no analogWrite() on D46, D45 or D44.
-// D3 and D11 are the enables of lower too: as long as either motor needs current, the coils of both
-// have it, also those of a motor that was released. Call ShieldInit() of both before either moves.
+// D3 and D11 are the enables for lower too: as long as one of these motors needs current, the coils
+// of all have it, also those of one that was released. Call lowerShieldInit() and upperShieldInit()
+// before any of them moves.
 
 // Steps for whole turns: 200 in each.
 constexpr uint32_t upperStepsForTurns(uint16_t turns) {

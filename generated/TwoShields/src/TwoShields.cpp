@@ -158,7 +158,7 @@ SHARED uint32_t lowerPosition() {
   return motion.target + (motion.mode & kReverse ? left : -left);
 }
 
-// Lets the current of the present phase flow. Only while interrupts are off.
+// Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void lowerEnergise() {
   lowerShow();
   PORTB |= 0x20;  // PWM B
@@ -238,7 +238,7 @@ ISR(TIMER1_OVF_vect, ISR_NAKED) {
       "   reti                           \n"  // 5
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   push  r30                      \n"  // 2
       "   push  r31                      \n"  // 2
@@ -523,7 +523,7 @@ SHARED uint32_t upperPosition() {
   return motion.target + (motion.mode & kReverse ? left : -left);
 }
 
-// Lets the current of the present phase flow. Only while interrupts are off.
+// Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void upperEnergise() {
   upperShow();
 }
@@ -601,7 +601,7 @@ ISR(TIMER3_OVF_vect, ISR_NAKED) {
       "   reti                           \n"  // 5
 
       "1: lds   r24, %[mode]             \n"  // 2  here the count is 0
-      "   sbrc  r24, %[think]            \n"  // 2  a millisecond limit or the end of a move:
+      "   sbrc  r24, %[think]            \n"  // 2  an end may be due:
       "   rjmp  2f                       \n"  //    think before the step
       "   push  r30                      \n"  // 2
       "   push  r31                      \n"  // 2

@@ -27,7 +27,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it lets go
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
 constexpr uint8_t MOTOR_CTRL_SPEED_VARIABLE = 0x40;   // update events change the speed
 constexpr uint8_t MOTOR_CTRL_VARIABLE_PWR = 0x20;     // each halves (FASTER) or doubles the next
 constexpr uint8_t MOTOR_CTRL_IRQ_TIMING = 0x10;       // the step interrupt applies them
@@ -35,7 +35,7 @@ constexpr uint8_t MOTOR_CTRL_UPDATE_STEPS = 0x08;     // timerUpd_ms counts step
 constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in milliseconds, not in steps
 constexpr uint8_t MOTOR_CTRL_FASTER = 0x02;           // events shorten the interval
 constexpr uint8_t MOTOR_CTRL_SLOWER = 0x00;           // they lengthen it: for readers
-constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward through the step sequence
+constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward: the position counts down
 
 // Status bits of the ReadStatus functions.
 constexpr uint8_t MOTOR_STAT_FAULT = 0x01;             // something was refused; a start clears it

@@ -5,7 +5,7 @@ Compare: registers and bits of the timer that runs through.
 from dataclasses import dataclass
 
 from stepgen.plan.model import MotorPlan
-from stepgen.plan.timings.compare import LONGEST_WAIT_CYCLES, PRESCALER
+from stepgen.plan.timings.compare import LONGEST_OVERRUN_CYCLES, LONGEST_WAIT_CYCLES, PRESCALER
 
 
 @dataclass(frozen=True)
@@ -16,6 +16,7 @@ class CompareView:
     Args:
         clock: Selects the prescaler of 8.
         longest_wait: How many clocks its interrupt may wait without harm.
+        longest_overrun: How many at most for an overrun to be seen and served.
     """
 
     number: int
@@ -31,6 +32,7 @@ class CompareView:
     ocie: str
     clock: str
     longest_wait: int
+    longest_overrun: int
     wake: str
     elapsed_type: str = ""  # nothing sets this timer anew
 
@@ -55,6 +57,7 @@ def view(motor: MotorPlan) -> CompareView:
         ocie=f"OCIE{n}A",
         clock=f"CS{n}1",
         longest_wait=LONGEST_WAIT_CYCLES,
+        longest_overrun=LONGEST_OVERRUN_CYCLES,
         wake=_wake(motor.wake_cycles),
     )
 

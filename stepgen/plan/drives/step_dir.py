@@ -5,7 +5,16 @@ A driver with STEP and DIR inputs: which pins they are on, and what its datashee
 import math
 from collections.abc import Sequence
 
-from stepgen.devices import DRIVERS, SHIELDS, Board, Pin, PulseTimes, Socket, StepDriver
+from stepgen.devices import (
+    DRIVERS,
+    SHIELDS,
+    Board,
+    Pin,
+    PulseTimes,
+    Socket,
+    SocketShield,
+    StepDriver,
+)
 from stepgen.plan.faults import Faults
 from stepgen.plan.pins import missing_pin
 from stepgen.plan.pulses import PulseCycles, PulseDrive
@@ -26,7 +35,7 @@ def plan(
     names = _names(spec, board, faults)
     if driver is None or names is None:
         return None
-    is_low = _is_active_low(spec, driver)
+    is_low = _is_active_low(spec)
     wires = _wires(names, board, is_low=is_low, faults=faults)
     if wires is None:
         return None
@@ -36,7 +45,7 @@ def plan(
         for other in beside
         if isinstance(other, StepDir) and enables and _enable(other, board) == enables[0].pin
     ]
-    levels = {_is_active_low(other, DRIVERS.get(other.driver or "")) for other in others}
+    levels = {_is_active_low(other) for other in others}
     if spec.enable and levels - {is_low}:
         faults.at("enable").report(
             f"{enables[0].pin.label} is active LOW for one driver and active HIGH for another that "
@@ -87,9 +96,7 @@ def _names(spec: StepDir, board: Board, faults: Faults) -> tuple[tuple[str, str]
 
 
 def _socket(text: str, board: Board, faults: Faults) -> Socket | None:
-    name, _, place = text.strip().partition(" ")
-    shield = SHIELDS.get(name.lower())
-    socket = shield.sockets.get(place.strip().upper()) if shield else None
+    shield, socket = _find(text)
     if shield is None or socket is None:
         known = "; ".join(f"{key} {', '.join(each.sockets)}" for key, each in SHIELDS.items())
         faults.at("socket").report(f"is no socket that stepgen knows; choose one of {known}")
@@ -103,10 +110,17 @@ def _socket(text: str, board: Board, faults: Faults) -> Socket | None:
     return socket
 
 
-def _is_active_low(spec: StepDir, driver: StepDriver | None) -> bool:
-    if spec.enable and spec.enable.active:
-        return spec.enable.active == "low"
-    return driver is None or driver.is_active_low
+def _find(text: str) -> tuple[SocketShield | None, Socket | None]:
+    """
+    Return the shield and the socket that *text* names, such as ``ramps-1.4 Z``.
+    """
+    name, _, place = text.strip().partition(" ")
+    shield = SHIELDS.get(name.lower())
+    return shield, shield.sockets.get(place.strip().upper()) if shield else None
+
+
+def _is_active_low(spec: StepDir) -> bool:
+    return not (spec.enable and spec.enable.active == "high")
 
 
 def _wires(
@@ -133,9 +147,7 @@ def _enable(spec: StepDir, board: Board) -> Pin | None:
     """
     if spec.enable:
         return board.find_pin(spec.enable.pin)
-    name, _, place = (spec.socket or "").strip().partition(" ")
-    shield = SHIELDS.get(name.lower())
-    socket = shield.sockets.get(place.strip().upper()) if shield else None
+    _, socket = _find(spec.socket or "")
     return board.find_pin(socket.enable) if socket else None
 
 

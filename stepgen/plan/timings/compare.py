@@ -19,14 +19,13 @@ Mode and Output Compare Unit.
 """
 
 from stepgen.devices import Board
-from stepgen.plan.compare_gate import gate
+from stepgen.plan.compare_gate import PRESCALER, gate
 from stepgen.plan.faults import Faults
 from stepgen.plan.model import Cadence, Setting, TimerPlan
 from stepgen.spec.timings.compare import Compare
 
-__all__ = ["cadence", "choose_setting", "gate", "offer", "plan", "way_out"]
+__all__ = ["PRESCALER", "cadence", "choose_setting", "gate", "offer", "plan", "way_out"]
 
-PRESCALER = 8
 LAP_CYCLES = 256 * PRESCALER
 NEAREST_MATCH_CYCLES = 128 * PRESCALER
 _MOVE_CYCLES = 46  # from the response until OCR2A is written, at most, with a little to spare

@@ -53,6 +53,7 @@ class StepDir(KindModel):
     Drive ``step-dir``: pins of one's own, or a socket such as ``ramps-1.4 Z``.
     """
 
+    asked = ("driver", "socket", "step", "dir", "enable", "microsteps")
     kind: Literal["step-dir"] = "step-dir"
     driver: str | None = None
     """The driver, such as a4988, from which its times follow."""

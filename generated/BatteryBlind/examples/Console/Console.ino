@@ -1,4 +1,4 @@
-// motor by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and type help.
+// motor by hand: open the Serial Monitor at 57600 baud, line ending "Newline", and type help.
 //
 // The motor turns while the sketch reads and answers; nothing in it waits.
 // The spec's `uses` does not name Serial: the highest rate is proven without its interrupts. Name
@@ -144,7 +144,7 @@ static void obey() {
 }
 
 void setup() {
-  Serial.begin(115200);
+  Serial.begin(57600);
   motorShieldInit();
   motorSetSpeed();  // stopped: from here on its status says that it is at rest
   interval = motorTimerCalcPerSecond(200);

@@ -1,4 +1,4 @@
-// Finds out in which order the four coils of a motor are wired. Open the Serial Monitor at 115200
+// Finds out in which order the four coils of a motor are wired. Open the Serial Monitor at 57600
 // baud and answer its questions.
 //
 // A motor whose coils are switched in a wrong order trembles, or turns to and fro. There are 24
@@ -98,7 +98,7 @@ static void test(const Motor &motor) {
 }
 
 void setup() {
-  Serial.begin(115200);
+  Serial.begin(57600);
   for (const Motor &motor : motors) test(motor);
   Serial.println(F("That is all; reset the board to begin again."));
 }

@@ -6,7 +6,7 @@ void setup() {
   motorShieldInit();
 }
 
-// One way of 200 steps one way, then back, each time the last one has ended.
+// 200 steps one way, then back, each time the last one has ended.
 static void turnMotor() {
   static uint8_t direction = MOTOR_CTRL_DIRECTION;
   static bool started = false;

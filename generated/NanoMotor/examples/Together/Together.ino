@@ -1,5 +1,5 @@
 // motor beside Serial, which the spec names in `uses`: ten times a second the sketch does something
-// small with each.
+// small with it.
 
 #include <NanoMotor.h>
 

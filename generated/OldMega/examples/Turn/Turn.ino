@@ -18,7 +18,7 @@ static void turnNear() {
   nearSetSpeed(MOTOR_CTRL_DRV_EN | direction, interval, nearStepsForTurns(1));
 }
 
-// One way of 200 steps one way, then back, each time the last one has ended.
+// 200 steps one way, then back, each time the last one has ended.
 static void turnFar() {
   static uint8_t direction = MOTOR_CTRL_DIRECTION;
   static bool started = false;

@@ -10,7 +10,7 @@ static const char kHelp[] PROGMEM =
     "speed 500    turn at 500 steps/s, backward with -500\n"
     "steps 2000   make 2000 steps at that speed, or -2000\n"
     "ramp         from 100 to 400 steps/s by update events\n"
-    "stop         at once, coils off\n"
+    "stop         at once\n"
     "status       does it run, and where is it\n";
 
 constexpr int kRoom = 62;  // no line that is printed is longer; the core's buffer holds 63

@@ -18,7 +18,7 @@ static void turnLeft() {
   leftSetSpeed(MOTOR_CTRL_DRV_EN | direction, interval, leftStepsForTurns(1));
 }
 
-// One way of 200 steps one way, then back, each time the last one has ended.
+// 200 steps one way, then back, each time the last one has ended.
 static void turnRight() {
   static uint8_t direction = MOTOR_CTRL_DIRECTION;
   static bool started = false;
