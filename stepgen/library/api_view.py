@@ -33,7 +33,7 @@ class Definition:
 
 
 _CONTROL_BITS = (
-    _Name("MOTOR_CTRL_DRV_EN", 0x80, "drive the motor; without it it stops, and lets go if it can"),
+    _Name("MOTOR_CTRL_DRV_EN", 0x80, "drive the motor; without it it stops"),
     _Name("MOTOR_CTRL_SPEED_VARIABLE", 0x40, "update events change the speed", _CHANGING),
     _Name("MOTOR_CTRL_VARIABLE_PWR", 0x20, "each halves (FASTER) or doubles the next", _CHANGING),
     _Name("MOTOR_CTRL_IRQ_TIMING", 0x10, "the step interrupt applies them", _CHANGING),
@@ -55,7 +55,7 @@ _STATUS_BITS = (
     _Name("MOTOR_STAT_REACHED", 0x10, "at the end point, or stopped"),
     _Name("MOTOR_STAT_REACH_CALLED", 0x20, "and its callback was told", _CHANGING),
     _Name("MOTOR_STAT_SPIN_FIXED", 0x40, "running at a speed that stays"),
-    _Name("MOTOR_STAT_MISSED", 0x80, "a step came too late: see ReadMissed; a start clears it"),
+    _Name("MOTOR_STAT_MISSED", 0x80, "a step came too late; a start clears it"),
 )
 _CODES = (
     _Name("MOTOR_ERROR_TOO_FAST", -1, "below MOTOR_MIN_TOP"),

@@ -1,7 +1,7 @@
 """
 The integer model: predicts every edge of one motor exactly, from what happens to it.
 
-Motions ``constant`` and ``update-events``, timings ``fast-pwm`` and ``compare``. The
+Motions ``constant`` and ``update-events``, timings ``fast-pwm``, ``ctc`` and ``compare``. The
 contract is the table of systems/1-motor-driver.md; the timer is in `stepgen.reference.timer`.
 """
 

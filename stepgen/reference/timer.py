@@ -1,5 +1,5 @@
 """
-The 16-bit timer in fast PWM mode 15, written the datasheet's way, and timer 2 running through.
+The 16-bit timers in fast PWM mode 15 and CTC, timer 2 running through, the datasheet's way.
 
 Sources: ATmega328P and ATmega2560 datasheets, "16-bit Timer/Counter", sections "Fast PWM
 Mode", "Timer/Counter Timing Diagrams" and "Using the Output Compare Unit", and
@@ -98,7 +98,7 @@ def first_tick_cycle(clock_on_cycle: int, prescaler: int) -> int:
 
 def first_overflow_cycle(clock_on_cycle: int, tcnt: int, setting: TimerSetting) -> int:
     """
-    Return when TOV is set first after the clock was selected with *tcnt* in the counter.
+    Return when TOV, in CTC OCFnA, is set first after the clock was selected with *tcnt*.
 
     With f the first tick: the counter shows tcnt + 1 from f on, tcnt + n from
     f + (n - 1) * p on, hence TOP from f + (TOP - tcnt - 1) * p on. One tick later, at

@@ -65,6 +65,9 @@ class CallKind(IntEnum):
 SWITCHING = frozenset({CallKind.HOLD, CallKind.RELEASE})
 """The calls that a motor does not have where nothing can switch its coils."""
 
+OF_NO_MOTOR = frozenset(kind for kind in CallKind if kind >= CallKind.HOLD_UP)
+"""The calls of the library as a whole, of avr-libc or of the sketch."""
+
 
 @dataclass(frozen=True)
 class Call:

@@ -13,6 +13,7 @@ from stepgen.verify.edges import wrong_positions
 from stepgen.verify.oracle import WAKE_CYCLES, Comparison, Oracle, Scene
 from stepgen.verify.pulses import broken_pulses
 from stepgen.verify.rules import broken_rules
+from stepgen.verify.standing import wrong_levels
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import PortState, Run
 
@@ -39,6 +40,8 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     for broken in broken_rules(subject, index, scene, runs, edges, result.intervals):
         result.report(broken)
     for wrong in wrong_positions(subject, index, scene, runs):
+        result.report(wrong)
+    for wrong in wrong_levels(subject, index, scene, runs, edges):
         result.report(wrong)
     motor = scene.plan.motors[index]
     for run in runs:
@@ -89,13 +92,17 @@ def _report_missing(
     scene: Scene, edges: Sequence[Edge], deadlines: set[int], result: Comparison
 ) -> None:
     """
-    Report the steps of the model for which there was no interrupt.
+    Report the steps of the model, and the ends of its moves, for which there was no interrupt.
     """
     last = scene.until_cycle - grace_cycles(scene)
+    sections = (scene.trace.commit(one.begin_cycle, one.end_cycle) for one in scene.answers)
+    made = deadlines | {section[0] for section in sections if section}
     for edge in edges:
         cycle = edge.deadline_cycle
-        if edge.kind is EdgeKind.STEP and cycle not in deadlines and cycle < last:
-            result.report(f"no step interrupt for the step due at cycle {cycle}")
+        if cycle in made and not (edge.kind is EdgeKind.STEP and cycle not in deadlines):
+            continue
+        if cycle < last:
+            result.report(f"no step interrupt for the {edge.kind} due at cycle {cycle}")
 
 
 def _compare_edge(

@@ -166,8 +166,9 @@ def _commands(plan: Plan, index: int) -> Iterator[Command]:
     yield Command("stop and start", (stop, Wait(APPROACH_CYCLES), speed(_PERIOD)), 3 * _PERIOD)
     yield Command("refused", (speed(1),))
     yield Command("read", (call(CallKind.READ),))
-    yield Command("hold", (call(CallKind.HOLD),))
-    yield Command("release", (call(CallKind.RELEASE),))
+    if plan.motors[index].switches_current:
+        yield Command("hold", (call(CallKind.HOLD),))
+        yield Command("release", (call(CallKind.RELEASE),))
     yield Command("init", (call(CallKind.INIT),))
     if _has_events(plan.motors[index]):
         changing = (_EVENTS | Control.IRQ_TIMING, 1_000, 1, 2)

@@ -13,7 +13,7 @@ from stepgen.plan.model import MotorPlan
 from stepgen.reference.contract import Control
 from stepgen.reference.stimuli import Edge, EdgeKind
 from stepgen.reference.timer import TimerSetting
-from stepgen.verify.bench import Answer, CallKind
+from stepgen.verify.bench import OF_NO_MOTOR, Answer, CallKind
 from stepgen.verify.oracle import WAKE_CYCLES, Scene
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import ClockStart, Run
@@ -22,7 +22,7 @@ from stepgen.verify.trace import ClockStart, Run
 _CALIBRATION_CYCLES = 8
 # Status, then position; one callback, then the other.
 _MASKED_SECTIONS = {CallKind.READ: 2, CallKind.CALLBACKS: 2}
-_NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS, CallKind.HOLD_UP}
+_NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS}
 
 
 def broken_rules(
@@ -36,7 +36,11 @@ def broken_rules(
     """
     Yield each rule that motor number *index* broke, in words.
     """
-    answers = [answer for answer in scene.answers if answer.call.motor == index]
+    answers = [
+        answer
+        for answer in scene.answers
+        if answer.call.motor == index and answer.call.kind not in OF_NO_MOTOR
+    ]
     yield from _unmasked_calls(subject, scene, answers)
     steps = [edge for edge in edges if edge.kind is EdgeKind.STEP]
     calls = [answer for answer in answers if answer.call.kind not in _NO_CODE]
@@ -156,9 +160,8 @@ def _late_edges(
             call.control & Control.ENDPOINT_MILLIS and call.limit
         )
         latest = motor.isr_bound_cycles if thinks else path.boundary_edge_cycles + WAKE_CYCLES
-        overrun = (
-            path.overrun_cycles is not None and run.entered - run.raised >= path.overrun_cycles
-        )
+        missed = subject.facts.overrun_cycles
+        overrun = missed is not None and run.entered - run.raised >= missed
         latest += motor.gate.late_cycles if overrun or run.serves_later else 0
         taken = subject.edge(run).cycle - run.entered
         if taken > latest:

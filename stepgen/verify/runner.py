@@ -7,7 +7,7 @@ from pathlib import Path
 
 from stepgen.plan.model import Plan
 from stepgen.spec import LoadedSpec
-from stepgen.verify.bench import SWITCHING, Answer, Bench, CallKind, Loop
+from stepgen.verify.bench import Answer, Bench, CallKind, Loop
 from stepgen.verify.compare import Comparison, Scene, compare
 from stepgen.verify.scenarios import Scenario, Wait
 from stepgen.verify.shared_pins import compare_shared
@@ -67,10 +67,10 @@ def run_scenario(
     """
     with Bench(plan, elf, simulator) as bench:
         bench.set_loop(scenario.loop)
-        for action in scenario.actions:
+        for action in scenario.actions_on(plan):
             if isinstance(action, Wait):
                 bench.wait(action.cycles)
-            elif action.kind not in SWITCHING or plan.motors[action.motor].switches_current:
+            else:
                 bench.call(action)
         return judge(bench, loaded, scenario)
 

@@ -17,7 +17,7 @@ from stepgen.errors import Fault, StepgenError
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.reference.contract import ALL_CONTROL_BITS, CONTROL_BITS, Control
 from stepgen.spec.load import load_model
-from stepgen.verify.bench import Call, CallKind, Loop
+from stepgen.verify.bench import SWITCHING, Call, CallKind, Loop
 from stepgen.verify.scenario_model import (
     UPDATE_FIELDS,
     CallStep,
@@ -60,8 +60,10 @@ def load_scenario(path: Path, plan: Plan) -> Scenario:
 def scenario_text(scenario: Scenario, plan: Plan) -> str:
     """
     Return *scenario* for the motors of *plan* as YAML, from which `load_scenario` makes it again.
+
+    Calls that a motor does not have are left out, as where it runs.
     """
-    steps = [_step(action, plan) for action in scenario.actions]
+    steps = [_step(action, plan) for action in scenario.actions_on(plan)]
     data = {"name": scenario.name, "loop": scenario.loop.name.lower(), "steps": steps}
     yaml = YAML()
     yaml.width = 1 << 16
@@ -110,8 +112,10 @@ def _lacks(
     step: CallStep, motor: MotorPlan, bits: Mapping[str, int]
 ) -> Iterator[tuple[tuple[str | int, ...], str]]:
     """
-    Yield what is there with update events only, if *motor* has none.
+    Yield what *motor* has not: a switch for its current, or update events and what is theirs.
     """
+    if step.kind in SWITCHING and not motor.switches_current:
+        yield ("call",), f"the motor {motor.name} has no ENABLE to switch; leave this out"
     known = _control_bits(motor)
     if known == ALL_CONTROL_BITS:
         return

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from stepgen.plan.model import Plan
 from stepgen.reference.contract import Control
-from stepgen.verify.bench import Call, CallKind, Loop
+from stepgen.verify.bench import SWITCHING, Call, CallKind, Loop
 
 DRIVE = int(Control.DRV_EN)
 BACK = int(Control.DRV_EN | Control.DIRECTION)
@@ -47,6 +47,18 @@ class Scenario:
         Return the simulated time of its waits; calls add a little.
         """
         return sum(action.cycles for action in self.actions if isinstance(action, Wait))
+
+    def actions_on(self, plan: Plan) -> Iterator[Action]:
+        """
+        Yield its actions without the calls that the library of *plan* does not have.
+        """
+        for action in self.actions:
+            if (
+                isinstance(action, Wait)
+                or action.kind not in SWITCHING
+                or plan.motors[action.motor].switches_current
+            ):
+                yield action
 
 
 def standard_scenarios(plan: Plan) -> tuple[Scenario, ...]:

@@ -14,19 +14,21 @@ from stepgen.verify.toolchain import Target, build, default_compiler
 
 SPECS = Path(__file__).parents[2] / "specs"
 
-MachineWith = Callable[[str, str], Machine]
+MachineWith = Callable[..., Machine]
 
 
 @pytest.fixture(scope="session")
 def machine_with(tmp_path_factory: pytest.TempPathFactory) -> MachineWith:
     """
     Return a function that puts a sketch, with the library of a spec, into a simulated chip.
+
+    Other *templates* than stepgen's own show what a test is good for.
     """
 
-    def make(stem: str, sketch: str) -> Machine:
+    def make(stem: str, sketch: str, templates: Path | None = None) -> Machine:
         folder = tmp_path_factory.mktemp(stem)
         plan = api.plan(SPECS / f"{stem}.yaml")
-        for path, text in {**render_library(plan, ""), "sketch.cpp": sketch}.items():
+        for path, text in {**render_library(plan, "", templates), "sketch.cpp": sketch}.items():
             file = folder / path
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")

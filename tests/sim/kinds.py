@@ -16,4 +16,7 @@ KINDS = (
     "uno_servo_beside",
     "uno_servo_beside_variable",
     "uno_two_motors",
+    "mega_ramps_z",
+    "uno_cnc_shield",
+    "uno_drv8825",
 )

@@ -61,7 +61,7 @@ class Mutant:
         shutil.copytree(template_dir(), templates)
         file = templates / self.template
         text = file.read_text(encoding="utf-8")
-        assert self.old in text
+        assert text.count(self.old) == 1, self.name
         file.write_text(text.replace(self.old, self.new), encoding="utf-8")
         return templates
 
@@ -86,8 +86,8 @@ MUTANTS = (
     Mutant(
         "the bytes of OCR swapped",
         "timings/fast_pwm.j2",
-        "{{ timer.ocra }} = next.top;",
-        "{{ timer.ocra }} = __builtin_bswap16(next.top);",
+        "{{ timer.tcnt }} = elapsed;\n  {{ timer.ocra }} = next.top;",
+        "{{ timer.tcnt }} = elapsed;\n  {{ timer.ocra }} = __builtin_bswap16(next.top);",
         check="a step each 20000 clocks",
         finding="no step interrupt for the step due at",
     ),
@@ -181,6 +181,34 @@ MUTANTS = (
         spec="uno_uln2003_28byj48",
         check="single steps both ways",
         finding="pattern 0000 at cycle",
+    ),
+    Mutant(
+        "coils that never go off after a move",
+        "motions/constant.j2",
+        "        {{ motor.name }}Reached((mode & kReverse) | kThink | kCoast);\n"
+        "        motion.rest = motion.restHigh = -1;\n"
+        "        {{ motor.count }} = 1;\n",
+        "        {{ motor.name }}Halt(mode);\n",
+        check="single steps both ways",
+        finding="no step interrupt for the coils-off due at",
+        spec="uno_uln2003_28byj48",
+    ),
+    Mutant(
+        "a stop that lets go of a motor that holds",
+        "macros/motion.j2",
+        "    if (!(control & MOTOR_CTRL_DRV_EN)) {{ motor.name }}CoilsOff();",
+        "    {{ motor.name }}CoilsOff();",
+        check="stop while running",
+        finding="the model says",
+    ),
+    Mutant(
+        "a change of speed that switches the coils off and on",
+        "timings/fast_pwm.j2",
+        "if (before & kRunning) {\n  {{ motor.name }}TakeOver();",
+        "if (before & kRunning) {\n  {{ motor.name }}CoilsOff();\n  {{ motor.name }}Energise();\n"
+        "  {{ motor.name }}TakeOver();",
+        check="restart while running",
+        finding="and back",
     ),
     Mutant(
         "an update event that is one too many",

@@ -12,8 +12,8 @@ SPECS = sorted((Path(__file__).resolve().parents[2] / "specs").glob("*.yaml"))
 SHARING = [path for path in SPECS if "stacked" in path.stem or "cnc" in path.stem]
 STACKED = [path for path in SPECS if path.stem.startswith("mega_stacked_shields")]
 WARNING = (
-    "as long as either motor needs current, the coils of both have it, also those of a motor "
-    "that was released"
+    "as long as one of these motors needs current, the coils of all have it, also those of one "
+    "that was released."
 )
 
 
@@ -34,7 +34,7 @@ def test_the_header_warns_of_current_in_a_released_motor(path: Path) -> None:
     header = _prose(_source(path, ".h"))
 
     for motor, other in (("lower", "upper"), ("upper", "lower")):
-        assert f"D3 and D11 are the enables of {other} too: {WARNING}." in header
+        assert f"D3 and D11 are the enables for {other} too: {WARNING}" in header
         release = header[: header.index(f"int8_t {motor}Release();")]
         assert release.endswith(
             f"so that the shaft turns freely, unless {other} needs the current. "
@@ -49,7 +49,7 @@ def test_the_readme_warns_and_initialises_both(path: Path) -> None:
     """
     readme = _source(path, "README.md")
 
-    assert "the coils of both have it, also those of a motor that was released." in readme
+    assert f"D3 and D11 are the enables for lower and upper: {WARNING}" in readme
     assert readme.count("  lowerShieldInit();") == readme.count("  upperShieldInit();") == 2
 
 

@@ -18,6 +18,7 @@ from stepgen.verify.scenarios import Action, Scenario, Wait
 SPECS = Path(__file__).parents[2] / "specs"
 CONSTANT = api.plan(SPECS / "mega_pan_tilt.yaml")
 CHANGING = api.plan(SPECS / "uno_variable_speed.yaml")
+ALWAYS_ENABLED = api.plan(SPECS / "uno_drv8825.yaml")
 BYTES, WORDS, LONGS = (st.integers(0, (1 << bits) - 1) for bits in (8, 16, 32))
 LINES = st.text(st.characters(exclude_categories=("C", "Zl", "Zp")), min_size=1, max_size=40)
 
@@ -137,3 +138,27 @@ def test_a_byte_that_the_library_must_refuse_can_be_given_as_a_number(tmp_path: 
     scenario = load_scenario(file, CONSTANT)
 
     assert scenario.actions == (Call(CallKind.SET_SPEED, 0, 0xC2, 640), Wait(7))
+
+
+@pytest.mark.parametrize("call", ["hold", "release"])
+def test_a_motor_without_enable_cannot_be_held_or_released(tmp_path: Path, call: str) -> None:
+    """
+    A driver that is always enabled has no such function: the file is refused, with its place.
+    """
+    file = tmp_path / "hold.yaml"
+    file.write_text(f"steps:\n  - {{call: {call}}}\n")
+
+    with pytest.raises(StepgenError, match="has no ENABLE to switch; leave this out") as refusal:
+        load_scenario(file, ALWAYS_ENABLED)
+
+    assert f"hold.yaml:2:{len('  - {call: ') + 1}: error: " in str(refusal.value)
+
+
+def test_calls_that_a_motor_lacks_are_not_written() -> None:
+    """
+    A general scenario, written for a motor without ENABLE, can be read back.
+    """
+    switched = Scenario("any", Loop.SLEEP, (Call(CallKind.HOLD), Wait(5), Call(CallKind.RELEASE)))
+
+    assert "hold" in scenario_text(switched, CHANGING)
+    assert "call" not in scenario_text(switched, ALWAYS_ENABLED)

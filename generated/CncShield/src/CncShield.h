@@ -31,7 +31,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops
 constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in milliseconds, not in steps
 constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward: the position counts down
 
@@ -40,7 +40,7 @@ constexpr uint8_t MOTOR_STAT_FAULT = 0x01;            // something was refused; 
 constexpr uint8_t MOTOR_STAT_TIMER_DIV_ERROR = 0x04;  // because a speed is out of range
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;          // at the end point, or stopped
 constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;       // running at a speed that stays
-constexpr uint8_t MOTOR_STAT_MISSED = 0x80;           // a step came too late: see ReadMissed; a start clears it
+constexpr uint8_t MOTOR_STAT_MISSED = 0x80;           // a step came too late; a start clears it
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed, above 0 a warning.
 constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // below MOTOR_MIN_TOP
@@ -158,8 +158,8 @@ int8_t ySetSpeed(
 uint8_t yReadStatus();
 
 // How many steps came more than 970 clocks late since yShieldInit(), because their
-// interrupt was held up. Up to 1900 clocks none of them is lost, and those after them come on time. An
-// interrupt that ends a move in place of a step counts as one. It wraps at 16 bits.
+// interrupt was held up. Up to 1900 clocks none of them is lost, and those after them come on
+// time. An interrupt that ends a move in place of a step counts as one. It wraps at 16 bits.
 uint16_t yReadMissed();
 
 // Where the motor is: 0 after yShieldInit(), +1 for each step,

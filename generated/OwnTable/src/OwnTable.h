@@ -26,7 +26,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops
 constexpr uint8_t MOTOR_CTRL_ENDPOINT_MILLIS = 0x04;  // limit is in milliseconds, not in steps
 constexpr uint8_t MOTOR_CTRL_DIRECTION = 0x01;        // backward: the position counts down
 

@@ -26,7 +26,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops
 constexpr uint8_t MOTOR_CTRL_SPEED_VARIABLE = 0x40;   // update events change the speed
 constexpr uint8_t MOTOR_CTRL_VARIABLE_PWR = 0x20;     // each halves (FASTER) or doubles the next
 constexpr uint8_t MOTOR_CTRL_IRQ_TIMING = 0x10;       // the step interrupt applies them

@@ -26,7 +26,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // Control bits of the SetSpeed functions.
-constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops, and lets go if it can
+constexpr uint8_t MOTOR_CTRL_DRV_EN = 0x80;           // drive the motor; without it it stops
 constexpr uint8_t MOTOR_CTRL_SPEED_VARIABLE = 0x40;   // update events change the speed
 constexpr uint8_t MOTOR_CTRL_VARIABLE_PWR = 0x20;     // each halves (FASTER) or doubles the next
 constexpr uint8_t MOTOR_CTRL_IRQ_TIMING = 0x10;       // the step interrupt applies them
@@ -44,7 +44,7 @@ constexpr uint8_t MOTOR_STAT_TIMER_DIV_CALLED = 0x08;  // and the callback was t
 constexpr uint8_t MOTOR_STAT_REACHED = 0x10;           // at the end point, or stopped
 constexpr uint8_t MOTOR_STAT_REACH_CALLED = 0x20;      // and its callback was told
 constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;        // running at a speed that stays
-constexpr uint8_t MOTOR_STAT_MISSED = 0x80;            // a step came too late: see ReadMissed; a start clears it
+constexpr uint8_t MOTOR_STAT_MISSED = 0x80;            // a step came too late; a start clears it
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed, above 0 a warning.
 constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // below MOTOR_MIN_TOP
@@ -130,8 +130,8 @@ void motorCallBackFault(void (*userFunction)());
 uint8_t motorReadStatus();
 
 // How many steps came more than 970 clocks late since motorShieldInit(), because their
-// interrupt was held up. Up to 1900 clocks none of them is lost, and those after them come on time. An
-// interrupt that ends a move in place of a step counts as one. It wraps at 16 bits.
+// interrupt was held up. Up to 1900 clocks none of them is lost, and those after them come on
+// time. An interrupt that ends a move in place of a step counts as one. It wraps at 16 bits.
 uint16_t motorReadMissed();
 
 // Where the motor is: 0 after motorShieldInit(), +1 for each step,
