@@ -7,16 +7,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from stepgen.devices import Board, Pin
-from stepgen.library.rates_view import lowest_baud
+from stepgen.library.rates_view import FRAME_BITS, lowest_baud
 from stepgen.library.text import listed
 from stepgen.plan.model import Plan
-from stepgen.plan.uses import Use, read_uses
+from stepgen.plan.uses import Use, accepted_uses
 
 SERIAL_PINS = frozenset({"Serial RX", "Serial TX"})
 
 _PINS_NEEDED = {"Servo": 1, "tone": 1, "SoftwareSerial": 2}
 _SLOWEST_BAUD = 9600
-_FRAME_BITS = 10
 _SPECIAL_USES = ("Serial", "SPI", "I2C", "LED")
 
 
@@ -56,7 +55,7 @@ def spec_uses(plan: Plan) -> tuple[Use, ...]:
     """
     Return what the spec of *plan* names in ``uses``.
     """
-    return tuple(read_uses(plan.uses, plan.board, lambda _index, _reason: None).values())
+    return accepted_uses(plan.uses, plan.board)
 
 
 def neighbours(plan: Plan, speed_sps: int) -> tuple[tuple[Neighbour, ...], tuple[str, ...]]:
@@ -82,7 +81,7 @@ def neighbours(plan: Plan, speed_sps: int) -> tuple[tuple[Neighbour, ...], tuple
         else:
             pins = tuple(pin_view(pin) for pin in (*use.pins, *taken))
             rate = baud or _SLOWEST_BAUD
-            time_us = round(_FRAME_BITS * 1_000_000 / rate)
+            time_us = round(FRAME_BITS * 1_000_000 / rate)
             found.append(Neighbour(use.name, _partial(use.name), pins, rate, time_us))
     return tuple(found), tuple(reasons)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from stepgen.plan.model import HeldOff, Plan, RateLimit
 
 _PIXEL_US = 30  # 24 bits of 1.25 us
-_FRAME_BITS = 10
+FRAME_BITS = 10  # of a byte of a UART: start, 8 data, stop
 _BAUD_RATES = (300, 600, 1200, 2400, 4800, 9600, 19_200, 38_400, 57_600, 115_200)
 _TICK_CYCLES = 64 * 256  # of millis
 
@@ -72,7 +72,7 @@ def lowest_baud(plan: Plan, steps_per_second: int, at_least: int) -> int | None:
 
 def _lowest_baud(held: HeldOff, plan: Plan) -> int | None:
     microseconds = _microseconds(held, plan)
-    return next((b for b in _BAUD_RATES if _FRAME_BITS * 1e6 / b <= microseconds), None)
+    return next((b for b in _BAUD_RATES if FRAME_BITS * 1e6 / b <= microseconds), None)
 
 
 def lateness(plan: Plan) -> str:

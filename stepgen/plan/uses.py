@@ -41,6 +41,13 @@ class Use:
         return self.name in (ANALOG_WRITE, "millis")
 
 
+def accepted_uses(texts: Iterable[str], board: Board) -> tuple[Use, ...]:
+    """
+    Return what *texts* take on *board*, of a spec in which nothing is wrong with them.
+    """
+    return tuple(read_uses(texts, board, lambda _index, _reason: None).values())
+
+
 def read_uses(texts: Iterable[str], board: Board, report: ReportAt) -> dict[int, Use]:
     """
     Return what *texts* take on *board*, by the index of the first text with each name.

@@ -12,7 +12,7 @@ from stepgen.devices import SKETCH_LIBRARIES, UNBOUND, LibraryClaims, Pin, libra
 from stepgen.plan.limits import Chip, everything, shortest_period
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.timings import way_out
-from stepgen.plan.uses import ANALOG_WRITE, read_uses
+from stepgen.plan.uses import ANALOG_WRITE, accepted_uses
 
 # What else fails beside the library itself where its pins are taken.
 _ALSO = {"Serial": ", and uploading may be disturbed"}
@@ -56,7 +56,7 @@ def _unbound_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
     """
     Yield the libraries in `uses` that can hold up *motor* for longer than anything bounds.
     """
-    uses = tuple(read_uses(plan.uses, plan.board, lambda _index, _reason: None).values())
+    uses = accepted_uses(plan.uses, plan.board)
     for use in uses:
         unbound = UNBOUND.get(use.name)
         if unbound is None:
@@ -111,7 +111,7 @@ def _way_out(motor: MotorPlan, library: LibraryClaims, plan: Plan) -> str:
     Return what *motor* can take that neither the plan nor *library* with few objects needs.
     """
     busy = {motor.timing.timer.number for motor in plan.motors} | {library.timers[0]}
-    for use in read_uses(plan.uses, plan.board, lambda _index, _reason: None).values():
+    for use in accepted_uses(plan.uses, plan.board):
         busy.update(use.timers)
     timers = [timer.number for timer in plan.board.mcu.timers]
     free = tuple(number for number in timers if number not in busy)

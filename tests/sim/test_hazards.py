@@ -2,8 +2,9 @@
 Commands at every clock of a step interrupt and of a period: no step lost or extra, none slow.
 
 Each trial starts a motor, lets a command meet a step of it at an offset that is exact to a clock,
-and reads the position; the whole is compared with the model. The campaign makes every trial that
-there is, `make test` a sample with a stored seed for each kind of spec.
+and reads the position; the whole is compared with the model. For each kind of spec the campaign
+makes every trial that there is, `make test` a sample with a stored seed; for the specs that are of
+no kind of their own the campaign makes a sample too.
 """
 
 from collections.abc import Callable
@@ -19,10 +20,12 @@ from tests.sim.shrinking import ROOT, Library
 
 SEED = 20_260_401
 SAMPLE = 300
+CAMPAIGN_SAMPLE = 20_000
 MOST_ROUNDS = 10
 _CALM_CYCLES = 900  # a call that begins so long before the step is over when it is due
 
 library_of = cache(Library.of)
+OTHERS = sorted({path.stem for path in (ROOT / "specs").glob("*.yaml")} - {*KINDS})
 PLANS = {stem: api.plan(ROOT / "specs" / f"{stem}.yaml") for stem in KINDS}
 EVERY_WAY = [
     pytest.param(stem, index, number, id=f"{stem}-{motor.name}-{way.name}")
@@ -113,4 +116,25 @@ def test_a_campaign_of_every_command_at_every_clock(
         "campaign",
         f"{stem} {name}, {way.name}: {trials} trials, {len(every)} commands, each at each clock of "
         f"its calls, {clocks} in all",
+    )
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("stem", OTHERS)
+def test_a_campaign_with_the_specs_of_no_kind_of_their_own(
+    stem: str, record_property: Callable[[str, object], None]
+) -> None:
+    """
+    Twenty thousand commands with each of them, on all ways, at offsets of a stored seed.
+    """
+    library = library_of(stem)
+    motors = range(len(library.plan.motors))
+
+    made = [
+        run(library, i, f"seed {SEED}", sample(library, i, SEED, CAMPAIGN_SAMPLE // len(motors)))
+        for i in motors
+    ]
+
+    record_property(
+        "campaign", f"{stem}: {sum(len(trials) for trials in made)} trials, seed {SEED}"
     )

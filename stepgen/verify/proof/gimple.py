@@ -93,7 +93,8 @@ def _read(body: str, function: Function) -> None:
     waiting = ""
     for line in body.splitlines():
         if block is None and line.startswith("  ") and line.endswith(";"):
-            _declare(line.strip().rstrip(";"), function.types)
+            if not line.startswith("  static "):  # a text in flash, which computes nothing
+                _declare(line.strip().rstrip(";"), function.types)
         elif found := _BLOCK.search(line):
             block = function.blocks.setdefault(int(found[1]), [])
         elif block is not None and line.strip():

@@ -16,6 +16,7 @@ from stepgen.verify.proof.memory import Place
 from stepgen.verify.proof.numbers import wide
 from stepgen.verify.proof.paths import Paths
 from stepgen.verify.proof.source import Source, read_source
+from stepgen.verify.recipes import IDE_VERSION, Target, board_properties, platform_dir
 
 _CONSTANT = re.compile(r"^constexpr \w+ (\w+) = (\w+?)U?L?;", re.MULTILINE)
 _STEPS_FOR = re.compile(
@@ -76,7 +77,10 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
     calls = "".join(_call(name, kind) for name, kind in units.items())
     unit.write_text(path.read_text(encoding="utf-8") + calls, "utf-8")
     source, board = read_source(unit), plan.board
-    flags = (f"-mmcu={board.mcu.name}", f"-DF_CPU={board.f_cpu_hz}UL", f"-I{path.parent}")
+    core, variant = platform_dir(), board_properties(Target.from_fqbn(board.fqbn))["build.variant"]
+    folders = (path.parent, core / "cores" / "arduino", core / "variants" / variant)
+    defines = (f"-mmcu={board.mcu.name}", f"-DF_CPU={board.f_cpu_hz}UL", f"-DARDUINO={IDE_VERSION}")
+    flags = (*defines, *(f"-I{folder}" for folder in folders))
     return Library(
         source=source,
         functions=functions(unit, compiler, flags),
