@@ -85,6 +85,8 @@ def _say_report(report: "SpecReport", *, paths: bool) -> None:
     say(f"{report.spec} ({tools}): {'passed' if report.passed else 'FAILED'}")
     for check in report.checks:
         say(f"  {'ok  ' if check.passed else 'FAIL'} {check.name}: {check.detail}")
+    for name, reason in report.left_out.items():
+        say(f"  --   {name}: left out: {reason}")
     for name, motor in report.motors.items():
         # Without the long run, which slow simulators leave out, there is no mean.
         mean = f"{motor.cycles_per_step:g} cycles per step, " if motor.cycles_per_step else ""

@@ -195,8 +195,8 @@ class Pulse:
         return HandlerCycles(
             longest=151 + pulse,
             masked=14 + self.hold_wait_cycles + self.setup_wait_cycles,
-            to_clock=72,
-            to_clock_thinking=86 + pulse,
+            to_clock=75,
+            to_clock_thinking=94 + pulse,
         )
 
 

@@ -79,14 +79,21 @@ class Engine:
         """
         return self.running and self.motion is not None and self.motion.ended_at(millis)
 
-    def update_check(self, cycle: int) -> None:
+    def update_check(self) -> None:
         """
-        Notice a millis limit that has passed, or let one due event happen; then call back.
+        Let one due event happen, unless a millis limit has passed.
+        """
+        motion = self.motion
+        pending = motion and self.running and not self.ended_at(self.millis)
+        if motion and pending and not motion.updates_in_interrupt:
+            self._update(motion)
+
+    def call_back(self, cycle: int) -> None:
+        """
+        Notice a millis limit that has passed, and make the callbacks that are due.
         """
         if self.ended_at(self.millis):
             self.notices.end_point()
-        elif self.motion and self.running and not self.motion.updates_in_interrupt:
-            self._update(self.motion)
         self.notices.deliver(cycle)
 
     def serve_until(self, cycle: int) -> None:

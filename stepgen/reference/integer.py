@@ -17,6 +17,7 @@ from stepgen.reference.pace import Pace
 from stepgen.reference.sharing import Need
 from stepgen.reference.stimuli import (
     Call,
+    CallBack,
     Callbacks,
     ClockOn,
     Edge,
@@ -159,7 +160,7 @@ class MotorModel:
     @property
     def callbacks(self) -> tuple[CallbackMade, ...]:
         """
-        Return each callback so far, with the commit of the `UpdateCheck` that made it.
+        Return each callback so far, with the moment of the `CallBack` that made it.
         """
         return tuple(self._notices.made)
 
@@ -169,7 +170,7 @@ class MotorModel:
 
         It shows REACHED as soon as a millis limit has passed, before the due moment at
         which the step is not made; until then the motor also counts as running. An
-        `UpdateCheck` in between notices it too, and makes the callback; reading does not.
+        `CallBack` in between notices it too, and makes the callback; reading does not.
         """
         self._serve_until(cycle)
         return self.status | Status.REACHED if self._engine.ended_at(millis) else self.status
@@ -202,7 +203,9 @@ class MotorModel:
                 self._notices.has_reached_callback = stimulus.reached
                 self._notices.has_fault_callback = stimulus.fault
             case UpdateCheck():
-                self._engine.update_check(stimulus.cycle)
+                self._engine.update_check()
+            case CallBack():
+                self._engine.call_back(stimulus.cycle)
             case _:
                 self._codes.append(self._call(stimulus))
                 return self._codes[-1]

@@ -109,6 +109,19 @@ class Init:
 class UpdateCheck:
     """
     A call of ``motorTimerUpdateCheck``, at the moment it masks the interrupts; it has no code.
+
+    A `CallBack` follows.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class CallBack:
+    """
+    The same call at the moment it masks the interrupts again, to see what it must call back.
+
+    In between a step, an end point or the clock may have come.
     """
 
     cycle: int
@@ -131,7 +144,7 @@ class Callbacks:
 
 
 Call = SetSpeed | Hold | Release | Init
-Stimulus = Call | UpdateCheck | Callbacks | ClockOn | MillisTick
+Stimulus = Call | UpdateCheck | CallBack | Callbacks | ClockOn | MillisTick
 
 
 class EdgeKind(StrEnum):

@@ -8,6 +8,7 @@ from enum import IntEnum
 
 from stepgen.devices import Board
 from stepgen.reference.stimuli import (
+    CallBack,
     Callbacks,
     ClockOn,
     Hold,
@@ -101,13 +102,15 @@ def _rows_of_call(answer: Answer, trace: Trace) -> Iterator[Row]:
     if first is None:
         return
     cycle = first[0]
+    second = trace.commit(answer.begin_cycle, answer.end_cycle, 1) or first
     stimulus = _stimulus(answer, cycle)
     if stimulus is not None:
         yield cycle, Order.CALL, Told(stimulus, answer)
+        if answer.call.kind is CallKind.UPDATE_CHECK:
+            yield second[0], Order.CALL, Told(CallBack(second[0]))
         return
     if answer.call.kind is not CallKind.READ:
         return
-    second = trace.commit(answer.begin_cycle, answer.end_cycle, 1) or first
     yield cycle, Order.CALL, StatusRead(answer)
     yield second[0], Order.CALL, PositionRead(answer)
 

@@ -128,8 +128,9 @@ def _ways(plan: Plan, index: int) -> Iterator[Way]:
     yield Way("a change of direction", start(), 4, start(_DRIVE | Control.DIRECTION))
     yield Way("a change of prescaler", start(), 4, start(top=_LONG_PERIOD), _LATER)
     yield Way("a step before a millisecond limit", start(millis, limit=60_000))
-    # millis() goes on 16384 clocks after it last did, which is before the fourth step.
-    yield Way("the end of a millisecond limit", start(millis, limit=1), after_tick_cycles=1_000)
+    # millis() goes on 16384 clocks after it last did, long before the fourth step, so that no
+    # command is interrupted by it.
+    yield Way("the end of a millisecond limit", start(millis, limit=1), after_tick_cycles=3_000)
     yield Way("a step with the next prescaler", start(top=_LONG_PERIOD), 2, None, _LATER)
     if _has_events(motor):
         by_isr = _EVENTS | Control.IRQ_TIMING

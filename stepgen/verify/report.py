@@ -48,14 +48,16 @@ class SpecReport:
     """
     The outcome of verifying one spec with one compiler on one simulator.
 
-    The stack is that of the step interrupts, measured and as the program bounds it;
-    *masked_cycles* is the longest that was measured with interrupts off in a call.
+    *left_out* has what the simulator cannot run, by name, and why. The stack is that of the step
+    interrupts, measured and as the program bounds it; *masked_cycles* is the longest that was
+    measured with interrupts off in a call.
     """
 
     spec: str
     compiler: str
     simulator: str
     checks: list[Check] = field(default_factory=list)
+    left_out: dict[str, str] = field(default_factory=dict)
     motors: dict[str, MotorFigures] = field(default_factory=dict)
     flash_bytes: int = 0
     ram_bytes: int = 0
@@ -86,6 +88,7 @@ class SpecReport:
             "simulator": self.simulator,
             "passed": self.passed,
             "checks": [vars(check) for check in self.checks],
+            "left_out": self.left_out,
             "motors": {
                 name: {
                     "isr_cycles": {"measured_max": one.measured_max, "bound": one.bound},

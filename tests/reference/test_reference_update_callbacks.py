@@ -13,6 +13,7 @@ from stepgen.reference.facts import MotorFacts
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sequences import coils_off, phases
 from stepgen.reference.stimuli import (
+    CallBack,
     Callbacks,
     ClockOn,
     Hold,
@@ -31,10 +32,21 @@ CLOCK = ClockOn(100, 1, 0)
 ONE_STEP = SetSpeed(50, 0x80, 1000, 1)
 
 
-def _model(*stimuli: Stimulus) -> MotorModel:
-    model = MotorModel(HOLDS)
+def _check(cycle: int) -> tuple[Stimulus, Stimulus]:
+    """
+    Return both halves of a check in which nothing comes in between.
+    """
+    return UpdateCheck(cycle), CallBack(cycle)
+
+
+def _tell(model: MotorModel, *stimuli: Stimulus) -> None:
     for stimulus in stimuli:
         model.apply(stimulus)
+
+
+def _model(*stimuli: Stimulus) -> MotorModel:
+    model = MotorModel(HOLDS)
+    _tell(model, *stimuli)
     return model
 
 
@@ -46,7 +58,7 @@ def test_an_end_point_calls_back_once(control: int) -> None:
     model = _model(BOTH, SetSpeed(50, control, 1000, 1, 1, 1, 1), CLOCK)
 
     for cycle in (1099, 1200, 1300):
-        model.apply(UpdateCheck(cycle))
+        _tell(model, *_check(cycle))
 
     assert model.callbacks == ((1200, "reached"),)
     assert model.status == 0x30
@@ -57,7 +69,7 @@ def test_a_stop_calls_nobody(stop: SetSpeed) -> None:
     """
     REACHED by a stop is no end point.
     """
-    model = _model(BOTH, SetSpeed(50, 0x80, 1000, 5), CLOCK, stop, UpdateCheck(1600))
+    model = _model(BOTH, SetSpeed(50, 0x80, 1000, 5), CLOCK, stop, *_check(1600))
 
     assert (model.callbacks, model.status) == ((), 0x10)
 
@@ -77,7 +89,7 @@ def test_calls_between_the_end_point_and_its_callback(
     """
     A stop or a refusal leaves the callback due, a start or Init drops it with the bit.
     """
-    model = _model(BOTH, ONE_STEP, CLOCK, between, UpdateCheck(1600))
+    model = _model(BOTH, ONE_STEP, CLOCK, between, *_check(1600))
 
     assert model.callbacks == made
 
@@ -86,15 +98,15 @@ def test_a_callback_registered_later_is_made_then() -> None:
     """
     Without a registered callback nothing is called and nothing is marked as called.
     """
-    model = _model(ONE_STEP, CLOCK, SetSpeed(1200, 0x80, 1), UpdateCheck(1300))
+    model = _model(ONE_STEP, CLOCK, SetSpeed(1200, 0x80, 1), *_check(1300))
     assert (model.callbacks, model.status) == ((), 0x15)
 
     model.apply(Callbacks(1400, reached=False, fault=True))
-    model.apply(UpdateCheck(1500))
+    _tell(model, *_check(1500))
     assert (model.callbacks, model.status) == (((1500, "fault"),), 0x1F)
 
     model.apply(Callbacks(1600, reached=True, fault=False))
-    model.apply(UpdateCheck(1700))
+    _tell(model, *_check(1700))
     assert (model.callbacks[1:], model.status) == (((1700, "reached"),), 0x3F)
 
 
@@ -106,17 +118,17 @@ def test_each_fault_calls_back_once() -> None:
     assert model.status == 0x05
 
     for cycle in (20, 30):
-        model.apply(UpdateCheck(cycle))
+        _tell(model, *_check(cycle))
         assert (model.callbacks, model.status) == (((20, "fault"),), 0x0F)
     model.apply(SetSpeed(40, 0xC0, 1000))
     assert model.status == 0x0D
-    model.apply(UpdateCheck(50))
+    _tell(model, *_check(50))
     assert (model.callbacks[1:], model.status) == (((50, "fault"),), 0x0F)
     model.apply(SetSpeed(60, 0x80, 1000))
-    model.apply(UpdateCheck(70))
+    _tell(model, *_check(70))
     assert (len(model.callbacks), model.status) == (2, 0x40)
     model.apply(Hold(80))
-    model.apply(UpdateCheck(90))
+    _tell(model, *_check(90))
     assert (model.callbacks[2:], model.status) == (((90, "fault"),), 0x43)
 
 
@@ -125,7 +137,7 @@ def test_a_clamp_in_a_check_is_called_back_by_it() -> None:
     The check that stops at a limit delivers the fault itself.
     """
     started = SetSpeed(50, 0xCA, 1000, 0, 500, 1, 5)
-    model = _model(BOTH, started, CLOCK, UpdateCheck(1200), UpdateCheck(1300))
+    model = _model(BOTH, started, CLOCK, *_check(1200), *_check(1300))
 
     assert (model.callbacks, model.status) == (((1200, "fault"),), 0x4F)
     assert [edge.deadline_cycle for edge in model.advance(2740)] == [50, 1100, 2100, 2740]
@@ -140,12 +152,12 @@ def test_a_check_notices_that_a_millis_limit_has_passed() -> None:
     model = _model(BOTH, started, CLOCK, MillisTick(1200, 2))
     assert (model.status, model.status_at(1300, 2)) == (0x00, 0x10)
 
-    model.apply(UpdateCheck(1300))
+    _tell(model, *_check(1300))
 
     assert (model.callbacks, model.status) == (((1300, "reached"),), 0x30)
     assert (model.running, model.virtual_cycles) == (True, 1000)
     assert [edge.deadline_cycle for edge in model.advance(9000)] == [50, 1100]
-    model.apply(UpdateCheck(9000))
+    _tell(model, *_check(9000))
     assert (model.running, model.status, len(model.callbacks)) == (False, 0x30, 1)
 
 
@@ -153,11 +165,23 @@ def test_a_callback_may_start_the_next_motion() -> None:
     """
     A start in the callback clears the bits, and its end point calls back again.
     """
-    model = _model(BOTH, ONE_STEP, CLOCK, UpdateCheck(1200), SetSpeed(1200, 0x81, 1000, 1))
+    model = _model(BOTH, ONE_STEP, CLOCK, *_check(1200), SetSpeed(1200, 0x81, 1000, 1))
     assert model.status == 0x40
 
     model.apply(ClockOn(1250, 1, 0))
-    model.apply(UpdateCheck(2250))
+    _tell(model, *_check(2250))
 
     assert model.callbacks == ((1200, "reached"), (2250, "reached"))
     assert (model.position, model.status) == (0, 0x30)
+
+
+def test_an_end_point_in_the_middle_of_a_check_is_called_back_by_it() -> None:
+    """
+    The last step is due between the two moments at which the check masks the interrupts.
+    """
+    model = _model(BOTH, ONE_STEP, CLOCK, UpdateCheck(1090))
+    assert model.status == 0x40
+
+    model.apply(CallBack(1110))
+
+    assert (model.callbacks, model.status) == (((1110, "reached"),), 0x30)

@@ -17,7 +17,14 @@ from stepgen.reference.contract import Status
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sequences import coils_off, phases
-from stepgen.reference.stimuli import Callbacks, ClockOn, MillisTick, SetSpeed, UpdateCheck
+from stepgen.reference.stimuli import (
+    CallBack,
+    Callbacks,
+    ClockOn,
+    MillisTick,
+    SetSpeed,
+    UpdateCheck,
+)
 
 SHIELD = MotorFacts(
     phases("motor-shield", "full"), coils_off("motor-shield"), 640, "hold", "update-events"
@@ -78,6 +85,7 @@ def _record(call: SetSpeed, prescaler: int, seconds: int, *, checks: bool = Fals
         if checks and tick.millis - checked >= CHECK_EACH_MS:
             checked = tick.millis
             model.apply(UpdateCheck(tick.cycle + 100))
+            model.apply(CallBack(tick.cycle + 100))
         steps = [edge for edge in model.advance(tick.cycle + 100) if edge.kind == "step"]
         record.step_cycles += [edge.deadline_cycle for edge in steps]
         row = (model.virtual_cycles, model.modification)

@@ -46,6 +46,21 @@ def test_avr8js_moves_the_motors_as_the_model_says(name: str) -> None:
     assert len(report.checks) > 10
 
 
+def test_what_a_simulator_leaves_out_is_named_with_the_reason() -> None:
+    """
+    Long scenarios and the example, and those whose outcome hangs on a cycle that it reads wrong.
+    """
+    report = api.verify(SPECS / "uno_servo_beside.yaml", simulator="avr8js")
+
+    run = {check.name for check in report.checks}
+    late = {name for name in report.left_out if "interrupts held up" in name}
+    assert len(late) > 5
+    assert "the example sketch" in report.left_out
+    assert any("s of simulated time, avr8js is slow" in why for why in report.left_out.values())
+    assert not run & {*report.left_out}
+    assert report.as_json()["left_out"] == report.left_out
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize("compiler", ["gcc-5.4", "gcc-7.3"])
 @pytest.mark.parametrize("name", EVERY_SPEC)

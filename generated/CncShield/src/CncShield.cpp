@@ -201,8 +201,8 @@ SHARED void xEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t xElapsed[] PROGMEM = {
-    117, 14, 1, 0, 0,
-    130, 16, 2, 0, 0,
+    120, 15, 1, 0, 0,
+    138, 17, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.

@@ -156,10 +156,10 @@ SHARED uint32_t motorPosition() {
 // from 1 on; then the same when it made the step itself; then both with a limit in
 // milliseconds.
 static const uint16_t motorElapsed[] PROGMEM = {
-    217, 27, 3, 0, 0,
-    226, 28, 3, 0, 0,
-    257, 32, 4, 1, 0,
-    266, 33, 4, 1, 0,
+    220, 27, 3, 0, 0,
+    234, 29, 3, 0, 0,
+    260, 32, 4, 1, 0,
+    274, 34, 4, 1, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.

@@ -157,8 +157,8 @@ SHARED void zEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t zElapsed[] PROGMEM = {
-    121, 15, 1, 0, 0,
-    137, 17, 2, 0, 0,
+    124, 15, 1, 0, 0,
+    145, 18, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
