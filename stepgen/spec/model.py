@@ -18,7 +18,7 @@ from stepgen.spec.base import SpecModel, short_form
 from stepgen.spec.drives import Drive
 from stepgen.spec.motions import Motion
 from stepgen.spec.timings import Timing
-from stepgen.spec.turns import Ratio, Steps
+from stepgen.spec.turns import Ratio, Steps, StepsPerMm
 
 _LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
@@ -163,7 +163,7 @@ class Motor(SpecModel):
     """How it moves: `constant` speed, or `update-events` that change the speed while it runs."""
     steps_per_turn: Steps | None = None
     """Full steps in one turn of the shaft: a number, or full_steps and gear."""
-    steps_per_mm: Ratio | None = None
+    steps_per_mm: StepsPerMm | None = None
     """Steps of the driver in one millimetre of the axis; microsteps count as steps."""
     at_rest: Literal["hold", "release"] = "release"
     """What the coils do after a motion with an end."""

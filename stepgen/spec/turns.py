@@ -7,11 +7,12 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Any, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from stepgen.spec.base import SpecModel, short_form
 
 _LARGEST = 1_000_000
+_UINT32_MAX = 0xFFFF_FFFF
 # As people write a gear. Fraction() takes more, such as 1e999999999, and then works for hours.
 _RATIO = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12}|/[0-9]{1,12})?")
 _NO_NUMBER = "is no number; write 64, 63.68395 or a fraction such as 25792/405"
@@ -34,6 +35,24 @@ def _fraction(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
 
 Ratio = Annotated[Fraction, short_form(_fraction, int | float | str)]
 """A positive ratio, kept exactly as it was written."""
+
+
+def _computable(per_mm: Fraction) -> Fraction:
+    """
+    Return *per_mm* if 32-bit positions, speeds and ways times its parts always fit 64 bits.
+    """
+    nanometres = 1_000_000 / per_mm
+    parts = (nanometres.numerator, nanometres.denominator, (per_mm / 1_000).numerator)
+    if max(parts) > _UINT32_MAX:
+        raise ValueError(
+            "has more digits than the chip can compute with; write at most three behind the point, "
+            "or a fraction such as 20000/127"
+        )
+    return per_mm
+
+
+StepsPerMm = Annotated[Ratio, AfterValidator(_computable)]
+"""Steps in a millimetre, such that no product of the metric functions overflows."""
 
 
 class StepsPerTurn(SpecModel):

@@ -109,3 +109,16 @@ def test_a_motor_without_millimetres_has_no_such_functions() -> None:
     spec = Path(__file__).resolve().parents[2] / "specs" / "uno_cnc_shield.yaml"
 
     assert not any("metres" in text for text in api.generate(spec).values())
+
+
+@pytest.mark.parametrize("steps", ["157.480", "999999.999", "20000/127", "0.001", "1000000/7"])
+def test_no_product_overflows(tmp_path: Path, steps: str) -> None:
+    """
+    With three digits behind the point all that 32 bits can ask for stays below 2^63.
+    """
+    files = _files(tmp_path, steps)
+    body = files["src/Mine.cpp"] + files["src/Mine.h"]
+    factors = [int(found) for found in re.findall(r"(\d+)U?LL", body)]
+
+    assert factors
+    assert all(factor << 31 < 1 << 63 for factor in factors)
