@@ -39,7 +39,8 @@ class Way:
         again: A call half a period before that step, if there is one.
         settle_cycles: How long it takes from that step until what it did shows.
         after_tick_cycles: How long after ``millis()`` went on the motor starts, if that matters.
-        only: The names of the commands that meet it at each clock; all, unless that takes too long.
+        only: The names of the commands that meet it; all, unless that takes too long.
+        stride: A command meets it at each clock, or only at each so manieth.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Way:
     settle_cycles: int = 0
     after_tick_cycles: int | None = None
     only: frozenset[str] = frozenset()
+    stride: int = 3
 
 
 @dataclass(frozen=True)
@@ -94,13 +96,15 @@ def commands(plan: Plan, index: int) -> tuple[Command, ...]:
     return tuple(_commands(plan, index))
 
 
-def window(way: Way, call_cycles: int) -> range:
+def window(way: Way, call_cycles: int, first: int = 0) -> range:
     """
-    Return the offset at each clock of a call, and of what follows the interrupt.
+    Return the offsets of *way* at the clocks of a call, and of what follows the interrupt.
 
-    Of a call that is longer than the period only those clocks that come after the step before.
+    They begin with number *first* of those that its stride goes over. Of a call that is longer than
+    the period only those clocks that come after the step before.
     """
-    return range(-min(call_cycles, way.start.top - APPROACH_CYCLES), AFTER_CYCLES)
+    begin = -min(call_cycles, way.start.top - APPROACH_CYCLES)
+    return range(begin + first % way.stride, AFTER_CYCLES, way.stride)
 
 
 def sweep(way: Way, call_cycles: int) -> range:
@@ -118,7 +122,7 @@ def _ways(plan: Plan, index: int) -> Iterator[Way]:
         return Call(CallKind.SET_SPEED, index, int(control), top, limit, *update)
 
     millis = _DRIVE | Control.ENDPOINT_MILLIS
-    yield Way("the usual way", start())
+    yield Way("the usual way", start(), stride=1)
     few = frozenset({"faster", "next prescaler", "reverse", "limit of one step", "stop", "read"})
     yield Way("the way each 255 steps", start(top=_short(plan)), _RUN_STEPS, only=few)
     yield Way("the last step", start(limit=4))
