@@ -104,7 +104,8 @@ def _rate_rows(decided: Plan, motor: MotorPlan) -> Iterable[Row]:
         yield (f"safe {limit.beside}", _period(limit.period_cycles, decided.board.f_cpu_hz))
     yield ("limited by", limits[-1].cause)
     parts = (f"{part.cycles} {part.cause}" for part in limits[-1].parts if part.cycles)
-    yield from (("not proven", text) for text in limits[-1].unproven)
+    for name, basis in limits[-1].unproven.items():
+        yield ("not proven", f"{name}: {basis}")
     yield ("cycles of a step", "\n".join(parts))
 
 

@@ -112,8 +112,8 @@ def safe_table(plan: Plan) -> Table:
 
 
 def _cause(limit: RateLimit) -> str:
-    names = [text.partition(":")[0] for text in limit.unproven]
-    return f"{limit.cause} (not proven: {', '.join(names)})" if names else limit.cause
+    names = ", ".join(limit.unproven)
+    return f"{limit.cause} (not proven: {names})" if names else limit.cause
 
 
 def held_table(plan: Plan) -> Table:

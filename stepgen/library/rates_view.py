@@ -5,6 +5,7 @@ What the README says of speed: how fast each motor may be, and how long interrup
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from stepgen.library.text import listed
 from stepgen.plan.model import HeldOff, Plan, RateLimit
 
 _PIXEL_US = 30  # 24 bits of 1.25 us
@@ -42,8 +43,8 @@ def speeds(plan: Plan) -> Iterator[str]:
 
 
 def _caution(limit: RateLimit) -> str:
-    names = [text.partition(":")[0] for text in limit.unproven]
-    return f"; the cycles of {' and '.join(names)} are not proven" if names else ""
+    names = tuple(limit.unproven)
+    return f"; the cycles of {listed(names)} are not proven" if names else ""
 
 
 def held_rows(plan: Plan) -> Iterator[HeldRow]:

@@ -3,8 +3,8 @@ The highest safe step rate, and how long interrupts may be off: what `stepgen.pl
 """
 
 import re
-from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
 from stepgen.devices import INTERRUPTS, MILLIS, Board, LibraryInterrupt
 from stepgen.plan.model import HeldOff, MotorPlan, Part, RateLimit
@@ -26,14 +26,14 @@ class Chip:
         motors: The motors, all of which run at once.
         beside: Interrupts of the core and of other libraries.
         masked_cycles: The longest stretch with interrupts off.
-        unproven: Those of *beside* whose cycles no test proves, and where these come from.
+        unproven: Those of *beside* whose cycles no test proves, by name, and where these come from.
     """
 
     board: Board
     motors: tuple[MotorPlan, ...]
     beside: tuple[Source, ...]
     masked_cycles: int
-    unproven: tuple[str, ...] = ()
+    unproven: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def floor_cycles(self) -> int:
@@ -93,12 +93,12 @@ def situations(alone: Chip, uses: Collection[Use]) -> Iterator[tuple[str, Chip]]
     if named:
         *names, last = ("millis", *named)
         others = tuple(source for sources in named.values() for source in sources)
-        unproven = tuple(
-            f"{name}: {interrupt.basis}"
+        unproven = {
+            name: interrupt.basis
             for name in named
             for interrupt in INTERRUPTS[name]
             if not interrupt.is_proven_on(alone.board.mcu)
-        )
+        }
         chip = replace(alone, beside=millis + others, unproven=unproven)
         yield f"beside {', '.join(names)} and {last}", chip
 

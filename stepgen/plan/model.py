@@ -3,7 +3,7 @@ The plan: every number decided, nothing left for the templates to work out.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from stepgen.devices import Board, Timer
@@ -99,7 +99,7 @@ class RateLimit:
     steps_per_second: float
     cause: str
     parts: tuple[Part, ...]
-    unproven: tuple[str, ...] = ()
+    unproven: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
