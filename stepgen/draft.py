@@ -229,6 +229,7 @@ def _flow(value: Any) -> str:  # noqa: ANN401 - any YAML
     """
     yaml = YAML(typ="safe", pure=True)
     yaml.default_flow_style, yaml.width = True, 10_000
+    yaml.representer.sort_base_mapping_type_on_output = False  # `kind` comes first
     stream = StringIO()
     yaml.dump(value, stream)
     return stream.getvalue().removesuffix("\n").removesuffix("...").rstrip()

@@ -11,6 +11,7 @@ from stepgen.commands.dump import plain
 from stepgen.commands.plan_options import ChangeWish, given, number, virtual_of_speed
 from stepgen.commands.plan_plot import describe, svg_plot, text_plot
 from stepgen.commands.report import print_tables, say
+from stepgen.commands.svg import require_svg
 from stepgen.errors import StepgenError
 from stepgen.plan.rates import Clock
 from stepgen.plan.speed_changes import Course, SpeedChange, Update, plan_change
@@ -27,10 +28,7 @@ def show_change(wish: ChangeWish, clock: Clock, *, as_json: bool) -> None:
     """
     Print the speed change that *wish* asks for, draw it, and print the call last.
     """
-    if wish.plot is not None and wish.plot.suffix.lower() != ".svg":
-        raise StepgenError.of(
-            "--plot draws SVG; give a name that ends in .svg", text=str(wish.plot)
-        )
+    require_svg(wish.plot)
     change = _change(wish, clock)
     if wish.plot is not None:
         wish.plot.write_text(svg_plot(change), encoding="utf-8")

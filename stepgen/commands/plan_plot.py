@@ -4,8 +4,9 @@ Speed against time: as an SVG picture, and as text for the terminal.
 
 from bisect import bisect_right
 from fractions import Fraction
-from xml.etree import ElementTree as ET
+from xml.etree.ElementTree import Element
 
+from stepgen.commands import svg
 from stepgen.datasheet.chart import ticks
 from stepgen.plan.speed_changes import SpeedChange
 from stepgen.units import MILLISECONDS_PER_SECOND
@@ -15,11 +16,7 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 80, 80, 50, 60
 _PLOT_WIDTH, _PLOT_HEIGHT = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM
 _MOST_DOTS = 60
 _TAIL = 0.05  # how much longer than the change the picture shows the end speed
-_STYLE = (
-    "text{font:13px sans-serif;fill:#222}.grid{stroke:#ddd}.axis{stroke:#222}"
-    ".speed{fill:none;stroke:#0b63b0;stroke-width:2}.update{fill:#0b63b0}"
-    ".end{text-anchor:end}.middle{text-anchor:middle}.title{font-weight:bold;font-size:15px}"
-)
+_STYLE = ".speed{fill:none;stroke:#0b63b0;stroke-width:2}.update{fill:#0b63b0}"
 _BRAILLE_DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # [row][column]
 _DOT_ROWS, _DOT_COLUMNS = 4, 2
 
@@ -30,22 +27,11 @@ def svg_plot(change: SpeedChange) -> str:
     """
     span_s = change.end.due_ms / MILLISECONDS_PER_SECOND * (1 + _TAIL)
     top_sps = float(max(update.rate_sps for update in change.updates)) * (1 + _TAIL)
-    root = ET.Element(
-        "svg",
-        xmlns="http://www.w3.org/2000/svg",
-        viewBox=f"0 0 {_WIDTH} {_HEIGHT}",
-        width=str(_WIDTH),
-        height=str(_HEIGHT),
-        role="img",
-    )
-    ET.SubElement(root, "title").text = describe(change)
-    ET.SubElement(root, "style").text = _STYLE
-    ET.SubElement(root, "rect", width="100%", height="100%", fill="#fff")
-    _write(root, describe(change), _WIDTH / 2, _TOP - 24, "middle title")
+    root = svg.drawing(_WIDTH, _HEIGHT, describe(change), _STYLE)
+    svg.write(root, describe(change), _WIDTH / 2, _TOP - 24, "middle title")
     _draw_axes(root, span_s, top_sps, float(change.clock.rpm(Fraction(1))))
     _draw_speed(root, change, span_s, top_sps)
-    ET.indent(root)
-    return ET.tostring(root, encoding="unicode") + "\n"
+    return svg.text_of(root)
 
 
 def describe(change: SpeedChange) -> str:
@@ -57,33 +43,33 @@ def describe(change: SpeedChange) -> str:
     return f"{start:.6g} to {end:.6g} steps/s in {updates} of {change.interval_ms} ms"
 
 
-def _draw_axes(root: ET.Element, span_s: float, top_sps: float, rpm_per_sps: float) -> None:
+def _draw_axes(root: Element, span_s: float, top_sps: float, rpm_per_sps: float) -> None:
     right, bottom = _LEFT + _PLOT_WIDTH, _TOP + _PLOT_HEIGHT
     for at_s in ticks(span_s):
         x = _LEFT + at_s / span_s * _PLOT_WIDTH
-        _line(root, "grid", (x, _TOP), (x, bottom))
-        _write(root, f"{at_s:.6g}", x, bottom + 20, "middle")
+        svg.line(root, "grid", (x, _TOP), (x, bottom))
+        svg.write(root, f"{at_s:.6g}", x, bottom + 20, "middle")
     for rate_sps in ticks(top_sps):
         y = bottom - rate_sps / top_sps * _PLOT_HEIGHT
-        _line(root, "grid", (_LEFT, y), (right, y))
-        _write(root, f"{rate_sps:.6g}", _LEFT - 8, y + 4, "end")
+        svg.line(root, "grid", (_LEFT, y), (right, y))
+        svg.write(root, f"{rate_sps:.6g}", _LEFT - 8, y + 4, "end")
     top_rpm = top_sps * rpm_per_sps
     for rpm in ticks(top_rpm):
         y = bottom - rpm / top_rpm * _PLOT_HEIGHT
-        _line(root, "axis", (right, y), (right + 5, y))
-        _write(root, f"{rpm:.6g}", right + 8, y + 4)
+        svg.line(root, "axis", (right, y), (right + 5, y))
+        svg.write(root, f"{rpm:.6g}", right + 8, y + 4)
     for start, end in (
         ((_LEFT, _TOP), (_LEFT, bottom)),
         ((_LEFT, bottom), (right, bottom)),
         ((right, _TOP), (right, bottom)),
     ):
-        _line(root, "axis", start, end)
-    _write(root, "time since the call, s", _LEFT + _PLOT_WIDTH / 2, _HEIGHT - 16, "middle")
-    _write(root, "steps/s", _LEFT - 8, _TOP - 10, "end")
-    _write(root, "RPM", right + 8, _TOP - 10)
+        svg.line(root, "axis", start, end)
+    svg.write(root, "time since the call, s", _LEFT + _PLOT_WIDTH / 2, _HEIGHT - 16, "middle")
+    svg.write(root, "steps/s", _LEFT - 8, _TOP - 10, "end")
+    svg.write(root, "RPM", right + 8, _TOP - 10)
 
 
-def _draw_speed(root: ET.Element, change: SpeedChange, span_s: float, top_sps: float) -> None:
+def _draw_speed(root: Element, change: SpeedChange, span_s: float, top_sps: float) -> None:
     """
     Draw the speed as a staircase, and the updates as dots where there are few.
     """
@@ -96,25 +82,9 @@ def _draw_speed(root: ET.Element, change: SpeedChange, span_s: float, top_sps: f
             corners.append((x, corners[-1][1]))
         corners.append((x, y))
         if update.number and change.count <= _MOST_DOTS:
-            ET.SubElement(root, "circle", {"class": "update", "r": "3"}, **_point(x, y, "c"))
+            svg.dot(root, "update", (x, y))
     corners.append((_LEFT + _PLOT_WIDTH, corners[-1][1]))
-    points = " ".join(f"{x:.1f},{y:.1f}" for x, y in corners)
-    ET.SubElement(root, "polyline", {"class": "speed", "points": points})
-
-
-def _point(x: float, y: float, prefix: str = "") -> dict[str, str]:
-    return {f"{prefix}x": f"{x:.1f}", f"{prefix}y": f"{y:.1f}"}
-
-
-def _line(
-    root: ET.Element, kind: str, start: tuple[float, float], end: tuple[float, float]
-) -> None:
-    ends = {"x1": start[0], "y1": start[1], "x2": end[0], "y2": end[1]}
-    ET.SubElement(root, "line", {"class": kind}, **{key: f"{at:.1f}" for key, at in ends.items()})
-
-
-def _write(root: ET.Element, text: str, x: float, y: float, kind: str = "start") -> None:
-    ET.SubElement(root, "text", {"class": kind}, **_point(x, y)).text = text
+    svg.curve(root, "speed", corners)
 
 
 def text_plot(change: SpeedChange, columns: int = 60, rows: int = 12, *, ascii_only: bool) -> str:
