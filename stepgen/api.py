@@ -1,18 +1,21 @@
 """
-What stepgen does, as Python functions; the command line is a thin layer on top.
+What stepgen does, as Python functions: one for each command, of the same name.
 
-`load`, `plan` and `generate` take one spec and write nothing. `generate_all`, `write` and
-`check` take several: all faults of all specs are reported together, and nothing is written
-unless every spec is fine and every target may be replaced.
+`load`, `plan`, `render` and `check` take one spec and write nothing. `generate` takes several, too:
+all faults of all specs are reported together, and nothing is written unless every spec is fine and
+every target may be replaced. What the user can mend is raised as a `StepgenError`; nothing is
+printed. docs/python.md shows each.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stepgen.datasheet.page import PATH as DATASHEET
 from stepgen.datasheet.page import render_datasheet
+from stepgen.devices import Board, find_board
+from stepgen.devices import boards as all_boards
 from stepgen.draft import Draft
 from stepgen.errors import Fault, StepgenError
 from stepgen.library.render import render_library
@@ -28,13 +31,50 @@ from stepgen.library.write import (
 )
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
+from stepgen.plan.warnings import PlanWarning, plan_warnings
 from stepgen.spec import LoadedSpec, load_spec
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     from stepgen.lint import LintReport, Rule
     from stepgen.verify.doctor import Diagnosis
     from stepgen.verify.report import SpecReport
     from stepgen.verify.runner import Outcome
+
+__all__ = [
+    "Board",
+    "Draft",
+    "Fault",
+    "Job",
+    "LoadedSpec",
+    "Plan",
+    "PlanWarning",
+    "Rendered",
+    "StepgenError",
+    "WriteResult",
+    "board",
+    "boards",
+    "check",
+    "datasheet",
+    "doctor",
+    "generate",
+    "init",
+    "lint",
+    "lint_not_checked",
+    "lint_rules",
+    "load",
+    "matrix",
+    "plan",
+    "render",
+    "render_all",
+    "schema",
+    "simulate",
+    "stale",
+    "tolerances",
+    "usable_simulators",
+    "verify",
+]
 
 TrackScenarios = Callable[[Sequence[Any]], Iterable[Any]]
 """Passes the scenarios of a verification on one by one, to show progress."""
@@ -42,9 +82,12 @@ TrackScenarios = Callable[[Sequence[Any]], Iterable[Any]]
 Track = Callable[[Sequence[Path]], Iterable[Path]]
 """Passes the specs on one by one, to show progress; such as ``rich.progress.track``."""
 
+Job = tuple[Path, str, str]
+"""Spec, compiler and simulator of one verification of `matrix`."""
+
 
 @dataclass(frozen=True)
-class Generated:
+class Rendered:
     """
     The library of one spec, not yet written: its files, path -> text.
     """
@@ -61,9 +104,37 @@ class Generated:
         return self.plan.library.name
 
 
+def boards() -> tuple[Board, ...]:
+    """
+    Return the boards that stepgen knows, in the order of their names.
+    """
+    return all_boards()
+
+
+def board(name: str) -> Board:
+    """
+    Return the board *name*: its chip, clock, pins, ports and timers.
+
+    Raises:
+        StepgenError: There is none of that name; the message lists those that there are.
+    """
+    found = find_board(name)
+    if found is None:
+        names = ", ".join(known.name for known in all_boards())
+        raise StepgenError.of(
+            f"is no board that stepgen knows; choose one of {names}", text=name[:80]
+        )
+    return found
+
+
 def init(draft: Draft, path: Path, *, force: bool = False) -> None:
     """
-    Write *draft* as the spec *path*; one that is there already only with *force*.
+    Write a first spec of one motor, with comments.
+
+    Args:
+        draft: What it shall say; each part has a default.
+        path: The file; one that is there already is overwritten only with *force*.
+        force: See there.
 
     Raises:
         StepgenError: The spec would be refused, or the file cannot be written.
@@ -96,17 +167,27 @@ def plan(path: Path) -> Plan:
     return make_plan(load_spec(path))
 
 
-def generate(path: Path) -> dict[str, str]:
+def check(path: Path) -> tuple[PlanWarning, ...]:
+    """
+    Validate the spec in *path*; return what its motors keep from libraries that it does not name.
+
+    Raises:
+        StepgenError: All faults and conflicts of the spec, each with its place and a way out.
+    """
+    return plan_warnings(plan(path))
+
+
+def render(path: Path) -> dict[str, str]:
     """
     Return the library of the spec in *path*, path inside the library -> text.
 
     Raises:
         StepgenError: All faults and conflicts of the spec.
     """
-    return _generate(path).files
+    return _render(path).files
 
 
-def generate_all(paths: Sequence[Path], *, track: Track = iter) -> tuple[Generated, ...]:
+def render_all(paths: Sequence[Path], *, track: Track = iter) -> tuple[Rendered, ...]:
     """
     Return the library of each spec in *paths*, in their order.
 
@@ -117,7 +198,7 @@ def generate_all(paths: Sequence[Path], *, track: Track = iter) -> tuple[Generat
     made = []
     for path in track(paths):
         try:
-            made.append(_generate(path))
+            made.append(_render(path))
         except StepgenError as error:
             faults += error.faults
     faults += _shared_names(made)
@@ -126,9 +207,9 @@ def generate_all(paths: Sequence[Path], *, track: Track = iter) -> tuple[Generat
     return tuple(made)
 
 
-def write(
+def generate(
     paths: Path | Sequence[Path],
-    output_dir: Path,
+    output_dir: Path = Path(),
     *,
     zipped: bool = False,
     force: bool = False,
@@ -148,7 +229,7 @@ def write(
         StepgenError: All faults of all specs, or why targets are refused. Nothing was written
             then; only when the disk itself fails can earlier libraries of the call be there.
     """
-    made = generate_all(_several(paths), track=track)
+    made = render_all(_several(paths), track=track)
     faults = [
         fault
         for library in made
@@ -159,15 +240,21 @@ def write(
     return tuple(_write(library, output_dir, zipped=zipped, force=force) for library in made)
 
 
-def check(
+def stale(
     paths: Path | Sequence[Path],
-    output_dir: Path,
+    output_dir: Path = Path(),
     *,
     zipped: bool = False,
     track: Track = iter,
 ) -> dict[Path, list[str]]:
     """
-    Return what is stale, missing or extra in each library that `write` would write.
+    Return what is stale, missing or extra in each library that `generate` would write.
+
+    Args:
+        paths: As of `generate`.
+        output_dir: As of `generate`.
+        zipped: As of `generate`.
+        track: Shows progress.
 
     Returns:
         The library's folder or zip -> a line for each difference; no lines where it is fresh.
@@ -176,7 +263,7 @@ def check(
         StepgenError: All faults of all specs, or what cannot be read.
     """
     found = {}
-    for library in generate_all(_several(paths), track=track):
+    for library in render_all(_several(paths), track=track):
         target = _target(library, output_dir, zipped=zipped)
         found[target] = (
             check_zip(library.files, library.name, target)
@@ -186,13 +273,13 @@ def check(
     return found
 
 
-def json_schema() -> dict[str, Any]:
+def schema() -> dict[str, Any]:
     """
     Return the JSON Schema of a spec, for editors; every valid spec fits it.
     """
-    from stepgen import schema  # noqa: PLC0415 - generating needs none
+    from stepgen.schema import json_schema  # noqa: PLC0415 - generating needs none
 
-    return schema.json_schema()
+    return json_schema()
 
 
 def lint(path: Path) -> "LintReport":
@@ -300,6 +387,49 @@ def usable_simulators(path: Path, *, compiler: str | None = None) -> dict[str, s
     return {simulator.name: refusal(decided, simulator, chosen) for simulator in SIMULATORS}
 
 
+def matrix(
+    paths: Sequence[Path],
+    *,
+    simulators: Sequence[str] | None = None,
+    jobs: int = 1,
+    track: Callable[[Any], Iterable[Any]] = iter,
+) -> "dict[Job, SpecReport | str]":
+    """
+    Verify each spec in *paths* with every compiler that is here, on each simulator.
+
+    Args:
+        paths: The specs.
+        simulators: Their names; without them all that are here, as far as each fits the spec.
+        jobs: How many verifications run at once, each in a process of its own.
+        track: Shows progress; passes on what has a length, in the order of its end.
+
+    Returns:
+        Spec, compiler and simulator -> the report, or why that simulator cannot be used there.
+
+    Raises:
+        StepgenError: All faults of all specs, or as of `verify`.
+    """
+    render_all(paths)
+    from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - slow to import
+
+    from stepgen.verify.toolchain import find_compilers  # noqa: PLC0415 - as in verify
+
+    names = [*tolerances()] if simulators is None else simulators
+    jobs_to_do = [
+        (path, compiler.name, name)
+        for path in paths
+        for compiler in find_compilers()
+        for name in names
+    ]
+    with ProcessPoolExecutor(max_workers=jobs) as pool:
+        futures = {
+            pool.submit(_verify, *job, may_refuse=simulators is None): job for job in jobs_to_do
+        }
+        for _ in track(_Finishing(futures)):
+            pass
+    return {job: future.result() for future, job in futures.items()}
+
+
 def doctor(*, track: Callable[[Sequence[Any]], Iterable[Any]] = iter) -> "Diagnosis":
     """
     Return which compilers and simulators are here, and how far each simulator can be trusted.
@@ -330,23 +460,48 @@ def simulate(
     return simulate_spec(load_spec(path), scenario, compiler)
 
 
+class _Finishing:
+    """
+    The futures in the order in which they finish, with a length for a progress bar.
+    """
+
+    def __init__(self, futures: "Mapping[Future[SpecReport | str], Job]") -> None:
+        self._futures = futures
+
+    def __len__(self) -> int:
+        return len(self._futures)
+
+    def __iter__(self) -> "Iterator[Future[SpecReport | str]]":
+        from concurrent.futures import as_completed  # noqa: PLC0415 - as in matrix
+
+        return as_completed(self._futures)
+
+
+def _verify(path: Path, compiler: str, simulator: str, *, may_refuse: bool) -> "SpecReport | str":
+    """
+    Return the report, or why *simulator* cannot be used for the spec in *path*.
+    """
+    reason = usable_simulators(path, compiler=compiler)[simulator] if may_refuse else ""
+    return reason or verify(path, compiler=compiler, simulator=simulator)
+
+
 def _several(paths: Path | Sequence[Path]) -> Sequence[Path]:
     return [paths] if isinstance(paths, Path) else paths
 
 
-def _generate(path: Path) -> Generated:
+def _render(path: Path) -> Rendered:
     loaded = load_spec(path)
     decided = make_plan(loaded)
     text = loaded.document.text
     files = {**render_library(decided, text), DATASHEET: render_datasheet(decided, text)}
-    return Generated(loaded, decided, dict(sorted(files.items())))
+    return Rendered(loaded, decided, dict(sorted(files.items())))
 
 
-def _shared_names(made: Sequence[Generated]) -> Iterable[Fault]:
+def _shared_names(made: Sequence[Rendered]) -> Iterable[Fault]:
     """
     Yield a fault for each library whose folder an earlier one has; case does not tell folders.
     """
-    first: dict[str, Generated] = {}
+    first: dict[str, Rendered] = {}
     for library in made:
         earlier = first.setdefault(library.name.lower(), library)
         if earlier is not library:
@@ -358,18 +513,18 @@ def _shared_names(made: Sequence[Generated]) -> Iterable[Fault]:
             )
 
 
-def _target(library: Generated, output_dir: Path, *, zipped: bool) -> Path:
+def _target(library: Rendered, output_dir: Path, *, zipped: bool) -> Path:
     return output_dir / (f"{library.name}.zip" if zipped else library.name)
 
 
-def _refusals(library: Generated, output_dir: Path, *, zipped: bool, force: bool) -> list[Fault]:
+def _refusals(library: Rendered, output_dir: Path, *, zipped: bool, force: bool) -> list[Fault]:
     target = _target(library, output_dir, zipped=zipped)
     if zipped:
         return zip_refusals(library.name, target)
     return refusals(library.files, target, force=force)
 
 
-def _write(library: Generated, output_dir: Path, *, zipped: bool, force: bool) -> WriteResult:
+def _write(library: Rendered, output_dir: Path, *, zipped: bool, force: bool) -> WriteResult:
     target = _target(library, output_dir, zipped=zipped)
     if zipped:
         existed = target.exists()

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from stepgen import api
 from stepgen.commands.report import print_tables
 from stepgen.devices import (
     SKETCH_LIBRARIES,
@@ -15,11 +16,8 @@ from stepgen.devices import (
     PortBit,
     Timer,
     Timer16,
-    find_board,
     library_claims,
 )
-from stepgen.devices import boards as all_boards
-from stepgen.errors import StepgenError
 
 EXAMPLE = "Example: stepgen boards uno"
 
@@ -36,14 +34,9 @@ def boards(
     List the boards, or show one's pins, ports and timers and what else uses them.
     """
     if board is None:
-        print_tables([("", _HEADING, map(_board_row, all_boards()))])
+        print_tables([("", _HEADING, map(_board_row, api.boards()))])
         return
-    found = find_board(board)
-    if found is None:
-        names = ", ".join(known.name for known in all_boards())
-        raise StepgenError.of(
-            f"is no board that stepgen knows; choose one of {names}", text=board[:80]
-        )
+    found = api.board(board)
     print_tables(
         [
             ("", _HEADING, [_board_row(found)]),

@@ -11,7 +11,7 @@ import typer
 from stepgen import api
 from stepgen.commands.report import WRONG, complain, printable, report_faults, say
 from stepgen.errors import StepgenError
-from stepgen.plan.warnings import PlanWarning, plan_warnings
+from stepgen.plan.warnings import PlanWarning
 
 EXAMPLE = "Example: stepgen check specs/*.yaml"
 
@@ -28,12 +28,12 @@ def check(
     failed = False
     for path in specs:
         try:
-            decided = api.plan(path)
+            warnings = api.check(path)
         except StepgenError as error:
             failed = True
             report_faults(error.faults)
         else:
-            report_warnings(path, plan_warnings(decided))
+            report_warnings(path, warnings)
             say(f"{path}: fine")
     if failed:
         raise typer.Exit(WRONG)

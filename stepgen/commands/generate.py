@@ -41,12 +41,12 @@ def generate(
     if check:
         _check(specs, output, zipped=zipped)
         return
-    for result in api.write(specs, output, zipped=zipped, force=force, track=track):
+    for result in api.generate(specs, output, zipped=zipped, force=force, track=track):
         _say_result(result, zipped=zipped)
 
 
 def _check(specs: list[Path], output: Path, *, zipped: bool) -> None:
-    found = api.check(specs, output, zipped=zipped, track=track)
+    found = api.stale(specs, output, zipped=zipped, track=track)
     for target, differences in found.items():
         if not differences:
             say(f"{target}: fresh")

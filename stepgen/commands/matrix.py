@@ -3,8 +3,6 @@
 """
 
 import os
-from collections.abc import Iterator
-from concurrent.futures import Future, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,10 +19,7 @@ EXAMPLE = "Example: stepgen matrix --jobs 2"
 
 _DEFAULT_FOLDER = Path("specs")
 _ALL = "all"
-_FIGURES = ("flash", "RAM", "a step", "longest")
-
-Job = tuple[Path, str, str]
-"""Spec, compiler and simulator."""
+_FIGURES = ("spec", "compiler", "flash", "RAM", "a step", "longest")
 
 
 def matrix(
@@ -44,37 +39,30 @@ def matrix(
     ] = "simavr",
 ) -> None:
     """
-    Compile and verify every spec with every compiler that is installed, and show a table.
+    Compile and verify every spec with every compiler that is installed, and show it in tables.
 
     A column for each simulator says whether all edges are where the model has them, to the cycle
     or to the cycles in its heading; - that it cannot be used for the spec, with the reason below
-    the table. Flash and RAM in bytes over an empty sketch; cycles a step takes, and the longest
-    interrupt.
+    the tables. Then flash and RAM in bytes over an empty sketch, cycles a step takes, and the
+    longest interrupt.
 
     Exit code 1 if any of them fails.
     """
     paths = specs or sorted(_DEFAULT_FOLDER.glob("*.yaml"))
     if not paths:
         raise StepgenError.of("no spec in specs/; name the specs", place=str(_DEFAULT_FOLDER))
-    api.generate_all(paths)
-    from stepgen.verify.toolchain import find_compilers  # noqa: PLC0415 - only needed here
-
-    simulators = [*api.tolerances()] if simulator == _ALL else [simulator]
-    pairs = [(path, compiler.name) for path in paths for compiler in find_compilers()]
-    from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - slow to import
-
-    with ProcessPoolExecutor(max_workers=jobs) as pool:
-        futures = {
-            pool.submit(_verify, *pair, name, may_refuse=simulator == _ALL): (*pair, name)
-            for pair in pairs
-            for name in simulators
-        }
-        with progress("verifying") as track:
-            for _ in track(_Finishing(futures)):
-                pass
-    results = {job: future.result() for future, job in futures.items()}
-    heading = ("spec", "compiler", *map(_title, simulators), *_FIGURES)
-    print_tables([("", heading, [_row(*pair, simulators, results) for pair in pairs])])
+    chosen = None if simulator == _ALL else [simulator]
+    with progress("verifying") as track:
+        results = api.matrix(paths, simulators=chosen, jobs=jobs, track=track)
+    pairs = list(dict.fromkeys((path, compiler) for path, compiler, _ in results))
+    simulators = list(dict.fromkeys(name for _, _, name in results))
+    verdicts = ("spec", "compiler", *map(_title, simulators))
+    print_tables(
+        [
+            ("", verdicts, [_verdict_row(*pair, simulators, results) for pair in pairs]),
+            ("", _FIGURES, [_figure_row(*pair, simulators, results) for pair in pairs]),
+        ]
+    )
     _say_what_is_left_out(results)
     failed = [one for one in results.values() if not isinstance(one, str) and not one.passed]
     for report in failed:
@@ -88,31 +76,18 @@ def _title(simulator: str) -> str:
     return f"{simulator} +-{tolerance_cycles}" if tolerance_cycles else simulator
 
 
-class _Finishing:
+def _verdict_row(
+    path: Path, compiler: str, simulators: list[str], results: dict[api.Job, "SpecReport | str"]
+) -> tuple[str, ...]:
     """
-    The futures in the order in which they finish, with a length for the progress bar.
+    Return the row of one spec and compiler, with the verdict of each simulator.
     """
-
-    def __init__(self, futures: dict[Future["SpecReport | str"], Job]) -> None:
-        self._futures = futures
-
-    def __len__(self) -> int:
-        return len(self._futures)
-
-    def __iter__(self) -> Iterator[Future["SpecReport | str"]]:
-        return as_completed(self._futures)
+    verdicts = (_verdict(results[path, compiler, name]) for name in simulators)
+    return (path.stem, compiler, *verdicts)
 
 
-def _verify(path: Path, compiler: str, simulator: str, *, may_refuse: bool) -> "SpecReport | str":
-    """
-    Return the report, or why *simulator* cannot be used for the spec in *path*.
-    """
-    reason = api.usable_simulators(path, compiler=compiler)[simulator] if may_refuse else ""
-    return reason or api.verify(path, compiler=compiler, simulator=simulator)
-
-
-def _row(
-    path: Path, compiler: str, simulators: list[str], results: dict[Job, "SpecReport | str"]
+def _figure_row(
+    path: Path, compiler: str, simulators: list[str], results: dict[api.Job, "SpecReport | str"]
 ) -> tuple[str, ...]:
     """
     Return the row of one spec and compiler; the figures are those of the first simulator.
@@ -125,7 +100,6 @@ def _row(
     return (
         path.stem,
         compiler,
-        *map(_verdict, of_each),
         str(report.flash_bytes),
         str(report.ram_bytes),
         f"{max(motor.cycles_per_step for motor in motors):g}",
@@ -139,7 +113,7 @@ def _verdict(result: "SpecReport | str") -> str:
     return "passed" if result.passed else "FAILED"
 
 
-def _say_what_is_left_out(results: dict[Job, "SpecReport | str"]) -> None:
+def _say_what_is_left_out(results: dict[api.Job, "SpecReport | str"]) -> None:
     """
     Say each reason for which a simulator was not used, once, and for which specs.
     """

@@ -10,8 +10,7 @@ from fractions import Fraction
 from stepgen.commands.dump import plain
 from stepgen.commands.plan_options import ChangeWish, given, number, virtual_of_speed
 from stepgen.commands.plan_plot import describe, svg_plot, text_plot
-from stepgen.commands.report import print_tables, say
-from stepgen.commands.svg import require_svg
+from stepgen.commands.report import print_tables, require_svg, say
 from stepgen.errors import StepgenError
 from stepgen.plan.rates import Clock
 from stepgen.plan.speed_changes import Course, SpeedChange, Update, plan_change

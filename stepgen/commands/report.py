@@ -97,6 +97,17 @@ def _read_lines(path: str) -> tuple[str, ...]:
     return tuple(LINE_END.split(text))
 
 
+def require_svg(path: Path | None) -> None:
+    """
+    Refuse a file for ``--plot`` whose name does not end in ``.svg``.
+
+    Raises:
+        StepgenError: It does not.
+    """
+    if path is not None and path.suffix.lower() != ".svg":
+        raise StepgenError.of("--plot draws SVG; give a name that ends in .svg", text=str(path))
+
+
 def _color() -> bool | None:
     """
     Return False where the user wants no colour; None leaves it to what the output is.

@@ -17,4 +17,4 @@ def schema() -> None:
     For editors with the YAML language server (VS Code's YAML extension, Neovim, Emacs ...) write
     it to a file and begin the spec with: # yaml-language-server: $schema=stepgen.schema.json
     """
-    say(json.dumps(api.json_schema(), indent=2, ensure_ascii=False))
+    say(json.dumps(api.schema(), indent=2, ensure_ascii=False))

@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from stepgen import api
-from stepgen.commands.report import FAILED, complain, print_tables, say
-from stepgen.commands.svg import require_svg
+from stepgen.commands.report import FAILED, complain, print_tables, require_svg, say
 from stepgen.library.swap import os_errors, replace_file
 
 EXAMPLE = "Example: stepgen simulate specs/uno_motor_shield.yaml --plot run.svg"
@@ -36,8 +35,9 @@ def simulate(
 
     Without a scenario each motor makes eight steps forward and eight back. A scenario has a list
     `steps` of calls and waits, such as {call: set_speed, control: [DRV_EN], top: 20000, limit: 4},
-    {wait_ms: 20}, {wait_clocks: 1234} and {call: read}; docs/commands/simulate.md has them all. Exit
-    code 1 if anything differs from the reference model; then it says what.
+    {wait_ms: 20}, {wait_clocks: 1234} and {call: read}; docs/commands/simulate.md has them all.
+
+    Exit code 1 if anything differs from the reference model; then it says what.
     """
     require_svg(plot)
     plan, outcome = api.simulate(spec, scenario, compiler=compiler)

@@ -2,10 +2,7 @@
 Plots as self-contained SVG: the frame, lines and texts that all of them are made of.
 """
 
-from pathlib import Path
 from xml.etree import ElementTree as ET
-
-from stepgen.errors import StepgenError
 
 Point = tuple[float, float]
 
@@ -13,17 +10,6 @@ _STYLE = (
     "text{font:13px sans-serif;fill:#222}.grid{stroke:#ddd}.axis{stroke:#222}"
     ".end{text-anchor:end}.middle{text-anchor:middle}.title{font-weight:bold;font-size:15px}"
 )
-
-
-def require_svg(path: Path | None) -> None:
-    """
-    Refuse a file for ``--plot`` whose name does not end in ``.svg``.
-
-    Raises:
-        StepgenError: It does not.
-    """
-    if path is not None and path.suffix.lower() != ".svg":
-        raise StepgenError.of("--plot draws SVG; give a name that ends in .svg", text=str(path))
 
 
 def drawing(width: int, height: int, title: str, style: str) -> ET.Element:

@@ -49,7 +49,7 @@ def verify(
 
     Exit code 1 if any check fails.
     """
-    api.generate_all(specs)  # all faults of all specs before the first of them is run
+    api.render_all(specs)  # all faults of all specs before the first of them is run
     reports = []
     for path in specs:
         for name in _simulators(path, simulator, compiler):

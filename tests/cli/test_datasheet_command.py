@@ -19,7 +19,7 @@ def test_the_page_is_that_of_the_library(stepgen: Stepgen, pan: Path, tmp_path: 
 
     assert (run.code, run.out) == (0, "Pan.html: written\n")
     written = (tmp_path / "Pan.html").read_text(encoding="utf-8")
-    assert written == api.generate(pan)["extras/datasheet.html"]
+    assert written == api.render(pan)["extras/datasheet.html"]
 
 
 def test_it_goes_where_output_says(stepgen: Stepgen, pan: Path, tmp_path: Path) -> None:

@@ -35,10 +35,10 @@ def test_the_library_is_written_into_its_folder(
     assert run.out.splitlines()[0] == "Pan: 13 written"
     assert "  written src/Pan.h" in run.out
     written = tree(tmp_path / "Pan")
-    assert {path: text.encode() for path, text in api.generate(pan).items()}.items() <= (
+    assert {path: text.encode() for path, text in api.render(pan).items()}.items() <= (
         written.items()
     )
-    assert set(written) - set(api.generate(pan)) == {"extras/stepgen.json"}
+    assert set(written) - set(api.render(pan)) == {"extras/stepgen.json"}
 
 
 def test_a_second_run_changes_nothing(stepgen: Stepgen, pan: Path) -> None:
@@ -191,14 +191,14 @@ def test_wrong_use_is_exit_code_2(
 
 def test_the_api_writes_one_spec_or_several(spec_of: SpecOf, tmp_path: Path) -> None:
     """
-    `api.write` takes a path or a list, and its faults are those of all specs.
+    `api.generate` takes a path or a list, and its faults are those of all specs.
     """
     pan, tilt = spec_of("Pan"), spec_of("Tilt")
 
-    assert [result.target.name for result in api.write(pan, tmp_path / "out")] == ["Pan"]
-    results = api.write([pan, tilt], tmp_path / "out")
+    assert [result.target.name for result in api.generate(pan, tmp_path / "out")] == ["Pan"]
+    results = api.generate([pan, tilt], tmp_path / "out")
     assert [result.is_fresh for result in results] == [True, False]
-    assert not any(api.check([pan, tilt], tmp_path / "out").values())
+    assert not any(api.stale([pan, tilt], tmp_path / "out").values())
     with pytest.raises(StepgenError) as caught:
-        api.write([spec_of("A", "no"), spec_of("B", "no")], tmp_path / "other")
+        api.generate([spec_of("A", "no"), spec_of("B", "no")], tmp_path / "other")
     assert len({fault.place for fault in caught.value.faults}) == 2

@@ -30,7 +30,7 @@ def test_the_example_built_by_the_ide_steps_as_the_model_says(
     A library in a libraries folder builds without a warning, and its ELF passes the comparison.
     """
     path = SPECS / f"{stem}.yaml"
-    (written,) = api.write(path, tmp_path / "libraries")
+    (written,) = api.generate(path, tmp_path / "libraries")
     plan = api.plan(path)
 
     built = build_with_ide(
@@ -60,7 +60,7 @@ def test_the_ide_builds_the_examples_that_have_functions(
     The IDE puts prototypes before the first function: they must not come before the types.
     """
     path = SPECS / f"{stem}.yaml"
-    (written,) = api.write(path, tmp_path / "libraries")
+    (written,) = api.generate(path, tmp_path / "libraries")
 
     built = build_with_ide(
         written.target / "examples" / name,

@@ -60,7 +60,7 @@ def compile_spec(folder: Path, data: dict[str, Any], *flags: str) -> None:
     """
     spec = folder / "spec.yaml"
     spec.write_text(json.dumps(data), encoding="ascii")  # which is YAML, too
-    for path, text in api.generate(spec).items():
+    for path, text in api.render(spec).items():
         if path.startswith(("src/", "examples/")):
             (folder / Path(path).name).write_text(text, encoding="utf-8")
     (folder / "Turn.ino").rename(folder / "Turn.cpp")

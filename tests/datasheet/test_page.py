@@ -34,7 +34,7 @@ def test_every_library_has_its_page(path: Path, tmp_path: Path) -> None:
     """
     copy = tmp_path / "elsewhere.yaml"
     copy.write_text(path.read_text(encoding="utf-8"), encoding="utf-8")
-    text = api.generate(path)[PATH]
+    text = api.render(path)[PATH]
 
     assert text == page(copy) == api.datasheet(path)
     assert len(text.encode()) < MOST_BYTES

@@ -32,7 +32,7 @@ def is_spec(path: Path, content: bytes) -> bool:
     """
     path.write_bytes(content)
     try:
-        files = api.generate(path)
+        files = api.render(path)
     except StepgenError as error:
         for fault in error.faults:
             assert fault.place.startswith(f"{path}:"), fault

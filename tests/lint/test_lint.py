@@ -30,7 +30,7 @@ def library(tmp_path: Path) -> Path:
         "library: Pan\nboard: uno\nmotors:\n  motor: {drive: motor-shield, timer: 1}\n",
         encoding="utf-8",
     )
-    api.write(spec, tmp_path)
+    api.generate(spec, tmp_path)
     return tmp_path / "Pan"
 
 

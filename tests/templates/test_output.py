@@ -77,7 +77,7 @@ def _generate(folder: Path, spec: dict[str, Any]) -> dict[str, str]:
     path = folder / "spec.yaml"
     with path.open("w", encoding="utf-8") as stream:
         YAML(typ="safe").dump(spec, stream)
-    return api.generate(path)
+    return api.render(path)
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
@@ -85,7 +85,7 @@ def test_the_text_of_a_library_is_clean(path: Path) -> None:
     """
     No blanks at line ends, no two empty lines in a row, one line end at the end.
     """
-    for name, text in api.generate(path).items():
+    for name, text in api.render(path).items():
         if name == "extras/spec.yaml":
             continue
         assert not re.search(r"[ \t]$", text, re.MULTILINE), name
@@ -99,7 +99,7 @@ def test_lines_of_code_fit_100_columns(path: Path) -> None:
     """
     Header, source and example can be read side by side.
     """
-    files = api.generate(path)
+    files = api.render(path)
     long = [
         f"{name}:{number}: {line}"
         for name, text in files.items()
@@ -118,9 +118,9 @@ def test_output_tells_nothing_of_time_and_place(path: Path, tmp_path: Path) -> N
     """
     copy = tmp_path / "elsewhere.yaml"
     copy.write_text(path.read_text(encoding="utf-8"), encoding="utf-8")
-    files = api.generate(path)
+    files = api.render(path)
 
-    assert files == api.generate(copy)
+    assert files == api.render(copy)
     written = "\n".join(text for name, text in files.items() if name != "extras/spec.yaml")
     assert not re.search(r"\b20\d\d-\d\d-\d\d\b|\b\d\d:\d\d:\d\d\b", written)
     for place in (str(ROOT), str(Path.home()), str(tmp_path), socket.gethostname()):

@@ -18,7 +18,7 @@ WARNING = (
 
 
 def _source(path: Path, ending: str) -> str:
-    (text,) = (text for name, text in api.generate(path).items() if name.endswith(ending))
+    (text,) = (text for name, text in api.render(path).items() if name.endswith(ending))
     return text
 
 
@@ -58,6 +58,6 @@ def test_enables_of_its_own_cost_nothing(path: Path) -> None:
     """
     Where no enables are shared nobody asks who needs them.
     """
-    files = api.generate(path).values()
+    files = api.render(path).values()
 
     assert not any("enablesNeeded" in text or "needs the current" in text for text in files)

@@ -26,7 +26,7 @@ def generate(tmp_path: Path) -> Generate:
     def made(text: str) -> dict[str, str]:
         spec = tmp_path / "spec.yaml"
         spec.write_text(f"library: Mine\n{text}", encoding="utf-8")
-        return api.generate(spec)
+        return api.render(spec)
 
     return made
 

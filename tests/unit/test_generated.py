@@ -18,7 +18,7 @@ def test_a_spec_has_a_fresh_library(path: Path) -> None:
     """
     What is checked in is what a run of today writes; `stepgen generate` mends it.
     """
-    found = api.check(path, GENERATED)
+    found = api.stale(path, GENERATED)
 
     assert list(found.values()) == [[]]
 

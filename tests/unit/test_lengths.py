@@ -23,7 +23,7 @@ motors:
 def _files(folder: Path, steps: str, board: str = "uno") -> dict[str, str]:
     path = folder / "spec.yaml"
     path.write_text(SPEC.format(steps=steps, board=board), encoding="utf-8")
-    return api.generate(path)
+    return api.render(path)
 
 
 def _body(text: str, name: str) -> str:
@@ -108,7 +108,7 @@ def test_a_motor_without_millimetres_has_no_such_functions() -> None:
     """
     spec = Path(__file__).resolve().parents[2] / "specs" / "uno_cnc_shield.yaml"
 
-    assert not any("metres" in text for text in api.generate(spec).values())
+    assert not any("metres" in text for text in api.render(spec).values())
 
 
 @pytest.mark.parametrize("steps", ["157.480", "999999.999", "20000/127", "0.001", "1000000/7"])

@@ -38,7 +38,7 @@ def test_its_steps_come_from_compare_match_a(tmp_path: Path) -> None:
     (motor,) = api.plan(path).motors
 
     assert motor.timing.vector == "TIMER1_COMPA_vect"
-    assert "TCCR1B = _BV(WGM12) | next.select" in api.generate(path)["src/Mine.cpp"]
+    assert "TCCR1B = _BV(WGM12) | next.select" in api.render(path)["src/Mine.cpp"]
 
 
 def test_its_range_is_that_of_fast_pwm(tmp_path: Path) -> None:
@@ -68,7 +68,7 @@ def test_both_timings_in_one_library_share_what_is_the_same(tmp_path: Path) -> N
     """
     Settings and the struct of a motion are there once.
     """
-    source = api.generate(_spec(tmp_path, BOTH))["src/Mine.cpp"]
+    source = api.render(_spec(tmp_path, BOTH))["src/Mine.cpp"]
 
     assert source.count("SHARED Setting chooseSetting(") == 1
     assert source.count("struct ConstantMotion {") == 1

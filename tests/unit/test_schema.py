@@ -45,7 +45,7 @@ def validator() -> Draft202012Validator:
     """
     Return what judges by the schema, which must be one itself.
     """
-    schema = api.json_schema()
+    schema = api.schema()
     Draft202012Validator.check_schema(schema)
     return Draft202012Validator(schema)
 
