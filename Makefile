@@ -26,6 +26,21 @@ APT_INSTALL = as_root=; \
 	$$as_root env DEBIAN_FRONTEND=noninteractive \
 		apt-get install --yes -qq --no-install-recommends $(1)
 
+# The same with those that are missing.
+APT_INSTALL_MISSING = if ! command -v dpkg-query > /dev/null; then \
+		echo "This is no Debian: have these packages' like installed: $(1)"; \
+		exit 0; \
+	fi; \
+	missing=; \
+	for package in $(1); do \
+		dpkg-query -W -f '$${db:Status-Status}\n' $$package 2> /dev/null | grep -qx installed \
+			|| missing="$$missing $$package"; \
+	done; \
+	if [ -n "$$missing" ]; then \
+		echo "Installing$$missing"; \
+		$(call APT_INSTALL,$$missing); \
+	fi
+
 # Mutation tests run those mutants of a function whose numbers end in 3 or 7; with MUTANTS='*' they
 # run all, which takes many hours.
 MUTANTS ?= *[37]
@@ -43,7 +58,7 @@ export PYMCU_TOOLCHAIN_NO_SEEDING := 1
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo test lint verify matrix generated campaign mutation yasimavr benchmark setup debian clean distclean
+.PHONY: help demo test lint verify matrix generated campaign mutation yasimavr benchmark setup debian browser clean distclean
 
 help:  ## Show this list.
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
@@ -54,7 +69,7 @@ demo: $(STAMPS)/runtime  ## Generate a first library into build/ and show it; ne
 	@echo && echo "Its README.md:" && sed 's/^/  /' build/ShieldMotor/README.md
 	@echo && echo "To use it, copy build/ShieldMotor into the libraries folder of your sketchbook."
 
-test: setup lint  ## Install what is missing, then run the linters and every test.
+test: setup browser lint  ## Install what is missing, then run the linters and every test.
 	$(BIN)/pytest -n $(JOBS) -m "not campaign and not yasimavr"
 
 lint: $(STAMPS)/dev  ## Run ruff and mypy.
@@ -68,7 +83,7 @@ verify: setup  ## Compile, simulate and compare the library of each spec.
 matrix: setup  ## The same on every compiler and every simulator that is installed, in one table.
 	$(BIN)/stepgen matrix --simulator all --jobs $(JOBS)
 
-campaign: setup $(STAMPS)/fuzz  ## Run what takes long: random campaigns, fuzzing, every spec on each compiler.
+campaign: setup $(STAMPS)/fuzz  ## Run what takes hours: random campaigns, fuzzing, proofs, mutation tests.
 	$(BIN)/pytest -n $(JOBS) -m campaign
 	$(MAKE) mutation
 
@@ -79,7 +94,7 @@ mutation: setup  ## Run the mutation tests of plan/ and reference/, and print th
 yasimavr: setup $(STAMPS)/yasimavr  ## Compile the third simulator and run the tests on it.
 	$(BIN)/pytest -n $(JOBS) -m yasimavr
 
-benchmark: setup  ## Measure how fast simulation is on this machine.
+benchmark: setup  ## Measure how long the first motor takes here, and how fast simulation is.
 	$(BIN)/python -m benchmarks
 
 generated: $(STAMPS)/runtime  ## Write the checked-in library of each spec again.
@@ -87,7 +102,7 @@ generated: $(STAMPS)/runtime  ## Write the checked-in library of each spec again
 	rm -rf generated
 	$(BIN)/stepgen generate specs/*.yaml --output generated
 
-setup: debian $(STAMPS)/avr8js  ## Install what the tests need, and run nothing.
+setup: debian $(STAMPS)/avr8js  ## Install the compilers and simulators, and run nothing.
 
 clean:  ## Remove what was built; .venv stays.
 	rm -rf build dist mutants .mypy_cache .pytest_cache .ruff_cache .hypothesis
@@ -97,20 +112,10 @@ distclean: clean  ## Remove .venv as well.
 	rm -rf $(VENV)
 
 debian:
-	@if ! command -v dpkg-query > /dev/null; then \
-		echo "This is no Debian: have these packages' like installed:" \
-			"$(DEBIAN_PACKAGES) $(BROWSER_PACKAGES)"; \
-		exit 0; \
-	fi; \
-	missing=; \
-	for package in $(DEBIAN_PACKAGES) $(BROWSER_PACKAGES); do \
-		dpkg-query -W -f '$${db:Status-Status}\n' $$package 2> /dev/null | grep -qx installed \
-			|| missing="$$missing $$package"; \
-	done; \
-	if [ -n "$$missing" ]; then \
-		echo "Installing$$missing"; \
-		$(call APT_INSTALL,$$missing); \
-	fi
+	@$(call APT_INSTALL_MISSING,$(DEBIAN_PACKAGES))
+
+browser:  ## Install the browser in which tests look at the datasheets.
+	@$(call APT_INSTALL_MISSING,$(BROWSER_PACKAGES))
 
 # Debian has the module venv in python3, but what it needs to make one in python3-venv.
 $(STAMPS)/venv:

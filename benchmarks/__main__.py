@@ -1,24 +1,26 @@
 """
-Runs every benchmark: ``python -m benchmarks [--rounds N]``.
+Runs the benchmarks: ``python -m benchmarks [NAME]... [--rounds N]``.
 """
 
 import argparse
 
-from benchmarks import simavr_speed
+from benchmarks import newcomer, simavr_speed
 from stepgen.commands.report import print_tables
 
-BENCHMARKS = (simavr_speed,)
+BENCHMARKS = {"newcomer": newcomer, "simavr_speed": simavr_speed}
 _ROUNDS = 7
 
 
 def main() -> None:
     """
-    Print a table for each benchmark.
+    Print a table for each benchmark that is asked for; for all of them if none is.
     """
-    options = argparse.ArgumentParser(prog="benchmarks", description=__doc__)
-    options.add_argument("--rounds", type=int, default=_ROUNDS, help="how often each is measured")
-    rounds = options.parse_args().rounds
-    print_tables([(one.TITLE, one.HEADING, one.rows(rounds)) for one in BENCHMARKS])
+    parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(BENCHMARKS))
+    parser.add_argument("--rounds", type=int, default=_ROUNDS, help="how often each is measured")
+    options = parser.parse_args()
+    chosen = [BENCHMARKS[name] for name in options.names or BENCHMARKS]
+    print_tables([(one.TITLE, one.HEADING, one.rows(options.rounds)) for one in chosen])
 
 
 main()

@@ -208,4 +208,5 @@ def _prompt(question: str, default: str, choices: tuple[str, ...]) -> str:
             show_default=bool(default),
         )
     except EOFError:
-        raise typer.Abort from None
+        reason = "no answer came; give it as an option, or leave --ask out for the defaults"
+        raise StepgenError.of(reason, text=question) from None

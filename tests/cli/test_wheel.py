@@ -4,6 +4,7 @@ What users install: the wheel and the source archive, away from this checkout.
 
 import subprocess
 import sys
+import tarfile
 import venv
 import zipfile
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 SPEC = ROOT / "specs" / "uno_motor_shield.yaml"
+TEXTS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md")
 
 
 def run(*command: str | Path, cwd: Path) -> str:
@@ -52,8 +54,9 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
     Return a copy of what packaging reads, so that nothing of it is built in the checkout.
     """
     folder = tmp_path_factory.mktemp("checkout")
-    wanted = ["pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md", ".gitignore"]
-    wanted += [f"{part}/{path}" for part in ("stepgen", "templates") for path in sources(part, "*")]
+    wanted = ["pyproject.toml", "LICENSE", ".gitignore", "Makefile", *TEXTS]
+    parts = ("stepgen", "templates", "docs")
+    wanted += [f"{part}/{path}" for part in parts for path in sources(part, "*")]
     for path in wanted:
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_bytes((ROOT / path).read_bytes())
@@ -91,13 +94,31 @@ def test_the_wheel_holds_all_that_stepgen_reads(wheel: Path) -> None:
     }
 
 
-def test_the_wheel_generates_in_an_empty_environment(wheel: Path, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def archive(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """
+    Return the source archive, made by the project's build backend.
+    """
+    folder = tmp_path_factory.mktemp("archive")
+    builder = folder / "builder" / "bin" / "python"
+    venv.create(folder / "builder", with_pip=True)
+    run(builder, "-m", "pip", "install", "--quiet", "hatchling", cwd=folder)
+    run(builder, "-m", "hatchling", "build", "-t", "sdist", "-d", folder, cwd=checkout)
+    (built,) = folder.glob("stepgen-*.tar.gz")
+    return built
+
+
+@pytest.mark.parametrize("kind", ["wheel", "archive"])
+def test_what_is_installed_generates_in_an_empty_environment(
+    kind: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     """
     Installed with its runtime dependencies only, it writes the library that the checkout writes.
     """
     venv.create(tmp_path / "venv", with_pip=True)
     bin_dir = tmp_path / "venv" / "bin"
-    run(bin_dir / "python", "-m", "pip", "install", "--quiet", wheel, cwd=tmp_path)
+    package = request.getfixturevalue(kind)
+    run(bin_dir / "python", "-m", "pip", "install", "--quiet", package, cwd=tmp_path)
     (tmp_path / "shield.yaml").write_bytes(SPEC.read_bytes())
 
     run(bin_dir / "stepgen", "generate", "shield.yaml", "--output", "installed", cwd=tmp_path)
@@ -116,22 +137,15 @@ def test_the_wheel_generates_in_an_empty_environment(wheel: Path, tmp_path: Path
     assert tree(tmp_path / "installed") == tree(tmp_path / "checkout")
     where = run(bin_dir / "python", "-c", "import stepgen; print(stepgen.__file__)", cwd=tmp_path)
     assert Path(where.strip()).is_relative_to(tmp_path / "venv")
+    assert (Path(where.strip()).parent / "py.typed").is_file()
 
 
 def test_the_source_archive_builds_the_same_package(
-    checkout: Path, wheel: Path, tmp_path: Path
+    archive: Path, wheel: Path, tmp_path: Path
 ) -> None:
     """
     A wheel made from the source archive holds the same files as one made from the checkout.
     """
-    builder = tmp_path / "builder"
-    venv.create(builder, with_pip=True)
-    run(builder / "bin" / "python", "-m", "pip", "install", "--quiet", "hatchling", cwd=tmp_path)
-    run(
-        *(builder / "bin" / "python", "-m", "hatchling", "build", "-t", "sdist", "-d", tmp_path),
-        cwd=checkout,
-    )
-    (archive,) = tmp_path.glob("stepgen-*.tar.gz")
     build_wheel(archive, tmp_path)
 
     with (
@@ -139,3 +153,14 @@ def test_the_source_archive_builds_the_same_package(
         zipfile.ZipFile(wheel) as from_checkout,
     ):
         assert sorted(from_archive.namelist()) == sorted(from_checkout.namelist())
+
+
+def test_the_source_archive_has_the_documents(archive: Path) -> None:
+    """
+    What people read comes with it: README and the like, and every page of docs/.
+    """
+    with tarfile.open(archive) as opened:
+        names = {name.partition("/")[2] for name in opened.getnames()}
+
+    assert {*TEXTS, "LICENSE", "Makefile"} <= names
+    assert {f"docs/{path}" for path in sources("docs", "*")} <= names

@@ -47,7 +47,7 @@ def chromium(folder: Path, text: str, *options: str) -> str:
     Show the page *text* in Chromium; return what that prints.
     """
     found = shutil.which("chromium")
-    assert found, "there is no chromium; `make setup` installs it"
+    assert found, "there is no chromium; `make browser` installs it"
     (folder / "page.html").write_text(text, encoding="utf-8")
     return subprocess.run(
         [

@@ -12,7 +12,7 @@ from typing import Any
 from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
-from stepgen.devices import boards
+from stepgen.devices import DRIVERS, boards
 from stepgen.spec.yaml_guard import HIDDEN
 
 Data = dict[str, Any]
@@ -100,28 +100,66 @@ def motor(draw: st.DrawFn, free: list[str], *, timed: bool) -> Data:
 
     It is on timer 2 unless it is *timed*, on one of 16 bits.
     """
-    named = st.sampled_from(["full", "wave", "half"])
-    if free:
-        pins = draw(st.lists(st.sampled_from(free), min_size=4, max_size=4, unique=True))
-        free[:] = [pin for pin in free if pin not in pins]
-        tables = st.lists(patterns, min_size=3, max_size=32).filter(_steps)
-        drive = {"kind": "four-wire", "pins": pins, "sequence": draw(named | tables)}
-    else:
-        drive = {"kind": "motor-shield", "sequence": draw(named)}
+    drives = [four_wire(free), step_dir(free)] if free else [motor_shield]
+    drive = draw(st.one_of(drives))
+    always_on = drive["kind"] == "step-dir" and "enable" not in drive
     gear = st.integers(1, 500) | st.sampled_from([63.68395, "25792/405", "1/3"])
     turn = st.fixed_dictionaries({"full_steps": st.integers(1, 2000), "gear": gear})
     options = {
-        "at_rest": st.sampled_from(["hold", "release"]),
+        "at_rest": st.sampled_from(["hold"] if always_on else ["hold", "release"]),
         "port": st.sampled_from(["owned", "shared"]),
         "motion": st.sampled_from(["constant", "update-events"])
         | st.just({"kind": "update-events", "debug": True}),
         "steps_per_turn": st.integers(1, 1_000_000) | turn,
+        "steps_per_mm": st.integers(1, 4000) | st.sampled_from([157.48, "20000/127"]),
     }
+    needed = {"at_rest": options.pop("at_rest")} if always_on else {}
     return {
         "drive": drive,
-        "timing": "fast-pwm" if timed else "compare",
-        **draw(st.fixed_dictionaries({}, optional=options)),
+        "timing": draw(st.sampled_from(["fast-pwm", "ctc"])) if timed else "compare",
+        **draw(st.fixed_dictionaries(needed, optional=options)),
     }
+
+
+sequences = st.sampled_from(["full", "wave", "half"])
+motor_shield = st.fixed_dictionaries({"kind": st.just("motor-shield"), "sequence": sequences})
+
+
+@st.composite
+def four_wire(draw: st.DrawFn, free: list[str]) -> Data:
+    """
+    Draw four coils on pins of *free*, which it takes away.
+    """
+    tables = st.lists(patterns, min_size=3, max_size=32).filter(_steps)
+    return {
+        "kind": "four-wire",
+        "pins": draw(pins_of(free, 4)),
+        "sequence": draw(sequences | tables),
+    }
+
+
+@st.composite
+def step_dir(draw: st.DrawFn, free: list[str]) -> Data:
+    """
+    Draw a driver with STEP and DIR, and perhaps ENABLE, on pins of *free*, which it takes away.
+    """
+    name = draw(st.sampled_from(sorted(DRIVERS)))
+    signals = draw(st.sampled_from([("step", "dir"), ("step", "dir", "enable")]))
+    pins: Data = dict(zip(signals, draw(pins_of(free, len(signals))), strict=True))
+    if "enable" in pins and draw(st.booleans()):
+        pins["enable"] = {"pin": pins["enable"], "active": draw(st.sampled_from(["low", "high"]))}
+    microsteps = draw(st.sampled_from(DRIVERS[name].microsteps))
+    return {"kind": "step-dir", "driver": name, **pins, "microsteps": microsteps}
+
+
+@st.composite
+def pins_of(draw: st.DrawFn, free: list[str], count: int) -> list[str]:
+    """
+    Draw *count* pins of *free*, which it takes away.
+    """
+    pins = draw(st.lists(st.sampled_from(free), min_size=count, max_size=count, unique=True))
+    free[:] = [pin for pin in free if pin not in pins]
+    return pins
 
 
 def _steps(table: list[str]) -> bool:

@@ -84,7 +84,7 @@ def test_what_the_campaign_found(path: Path) -> None:
 @pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + GROUPS))
 def test_random_specs_run_as_the_model_says(tmp_path: Path, seed: int) -> None:
     """
-    Twenty specs in all, of any board, pins, sequence, timing and motion.
+    Twenty specs in all, of any board, drive, pins, sequence, timing and motion.
     """
     run_group(tmp_path, seed)
 
