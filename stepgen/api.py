@@ -7,7 +7,7 @@ every target may be replaced. What the user can mend is raised as a `StepgenErro
 printed. docs/python.md shows each.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,8 +35,6 @@ from stepgen.plan.warnings import PlanWarning, plan_warnings
 from stepgen.spec import LoadedSpec, load_spec
 
 if TYPE_CHECKING:
-    from concurrent.futures import Future
-
     from stepgen.lint import LintReport, Rule
     from stepgen.verify.doctor import Diagnosis
     from stepgen.verify.report import SpecReport
@@ -410,24 +408,18 @@ def matrix(
         StepgenError: All faults of all specs, or as of `verify`.
     """
     render_all(paths)
-    from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - slow to import
-
-    from stepgen.verify.toolchain import find_compilers  # noqa: PLC0415 - as in verify
+    from stepgen.verify.parallel import in_processes  # noqa: PLC0415 - as in verify
+    from stepgen.verify.toolchain import find_compilers  # noqa: PLC0415 - the same
 
     names = [*tolerances()] if simulators is None else simulators
-    jobs_to_do = [
+    wanted = [
         (path, compiler.name, name)
         for path in paths
         for compiler in find_compilers()
         for name in names
     ]
-    with ProcessPoolExecutor(max_workers=jobs) as pool:
-        futures = {
-            pool.submit(_verify, *job, may_refuse=simulators is None): job for job in jobs_to_do
-        }
-        for _ in track(_Finishing(futures)):
-            pass
-    return {job: future.result() for future, job in futures.items()}
+    work = _verify_where_possible if simulators is None else _verify
+    return in_processes(work, wanted, jobs, track)
 
 
 def doctor(*, track: Callable[[Sequence[Any]], Iterable[Any]] = iter) -> "Diagnosis":
@@ -460,29 +452,16 @@ def simulate(
     return simulate_spec(load_spec(path), scenario, compiler)
 
 
-class _Finishing:
-    """
-    The futures in the order in which they finish, with a length for a progress bar.
-    """
-
-    def __init__(self, futures: "Mapping[Future[SpecReport | str], Job]") -> None:
-        self._futures = futures
-
-    def __len__(self) -> int:
-        return len(self._futures)
-
-    def __iter__(self) -> "Iterator[Future[SpecReport | str]]":
-        from concurrent.futures import as_completed  # noqa: PLC0415 - as in matrix
-
-        return as_completed(self._futures)
+def _verify(path: Path, compiler: str, simulator: str) -> "SpecReport | str":
+    return verify(path, compiler=compiler, simulator=simulator)
 
 
-def _verify(path: Path, compiler: str, simulator: str, *, may_refuse: bool) -> "SpecReport | str":
+def _verify_where_possible(path: Path, compiler: str, simulator: str) -> "SpecReport | str":
     """
     Return the report, or why *simulator* cannot be used for the spec in *path*.
     """
-    reason = usable_simulators(path, compiler=compiler)[simulator] if may_refuse else ""
-    return reason or verify(path, compiler=compiler, simulator=simulator)
+    reason = usable_simulators(path, compiler=compiler)[simulator]
+    return reason or _verify(path, compiler, simulator)
 
 
 def _several(paths: Path | Sequence[Path]) -> Sequence[Path]:

@@ -25,7 +25,8 @@ def lint(
     """
     Check library folders against the Arduino library specification, as strictly as Arduino Lint.
 
-    Each finding has its file and line, the name of the rule and what to do; exit 1 if there is one.
+    Each finding has its file, its line where it has one, the name of the rule and what to do; exit
+    code 1 if there is one.
     """
     if rules:
         rows = [(rule.name, rule.title, rule.fix) for rule in api.lint_rules()]

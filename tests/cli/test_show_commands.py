@@ -228,16 +228,26 @@ def test_rich_is_not_imported_for_one_spec(pan: Path, command: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("typed", "completed"), [("stepgen da", "datasheet"), ("stepgen ma", "matrix")]
+    ("typed", "completed"),
+    [
+        ("stepgen da", "datasheet"),
+        ("stepgen ma", "matrix"),
+        ("stepgen generate --fo", "--force"),
+        ("stepgen simulate --pl", "--plot"),
+    ],
 )
-def test_the_shell_completes_commands(typed: str, completed: str) -> None:
+def test_the_shell_completes_commands_and_options(typed: str, completed: str) -> None:
     """
     After `stepgen --install-completion` a shell asks stepgen how a word goes on.
     """
     done = subprocess.run(
         [sys.executable, "-m", "stepgen"],
         env=os.environ
-        | {"_STEPGEN_COMPLETE": "complete_bash", "COMP_WORDS": typed, "COMP_CWORD": "1"},
+        | {
+            "_STEPGEN_COMPLETE": "complete_bash",
+            "COMP_WORDS": typed,
+            "COMP_CWORD": str(typed.count(" ")),
+        },
         capture_output=True,
         check=False,
         encoding="utf-8",

@@ -120,6 +120,15 @@ def test_every_link_leads_somewhere(page: Page) -> None:
         assert not anchor or anchor in Page(file.resolve()).anchors, (file, anchor)
 
 
+@pytest.mark.parametrize("page", [*PAGES, *OTHERS], ids=lambda page: page.name)
+def test_every_row_of_a_table_has_its_cells(page: Page) -> None:
+    """
+    As many as the heading: a bar within a cell would have to be escaped.
+    """
+    for heading, *rows in page.tables:
+        assert {len(row) for row in rows} <= {len(heading)}, heading
+
+
 def test_every_page_is_reached_from_the_index() -> None:
     """
     From README.md each page of docs/ can be reached by links, and from docs/README.md as well.
