@@ -21,15 +21,6 @@ from stepgen.verify.proof.prove import Proof, prove_library
 SPECS = Path(__file__).resolve().parents[2] / "specs"
 EVERY_SPEC = sorted(SPECS.glob("*.yaml"))
 
-_LONG = "its step interrupt takes minutes, and was not gone through yet as the templates are now"
-NOT_PROVEN = {
-    "uno_debug": "its header needs Print of the Arduino core, which is not compiled for the proof",
-    "pro-mini-8mhz_28byj48": _LONG,
-    "uno_three_ports_variable": _LONG,
-    "mega_stacked_shields_variable": _LONG,
-}
-"""The specs that the campaign leaves out, each with the reason; the README names them too."""
-
 
 @dataclass(frozen=True)
 class Quick:
@@ -174,10 +165,10 @@ def test_no_bit_is_lost(quick: Quick, tmp_path: Path) -> None:
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("spec", [path.stem for path in EVERY_SPEC if path.stem not in NOT_PROVEN])
+@pytest.mark.parametrize("spec", [path.stem for path in EVERY_SPEC])
 def test_no_library_loses_a_bit(spec: str, tmp_path: Path) -> None:
     """
-    The same for every function of every spec but those of `NOT_PROVEN`.
+    The same for every function of every spec.
     """
     proofs = _prove(spec, tmp_path)
 
@@ -201,17 +192,6 @@ def test_a_planted_overflow_is_found(mutant: Mutant, tmp_path: Path) -> None:
 
     assert proof.violations
     assert all(violation.example for violation in proof.violations)
-
-
-def test_the_readme_names_what_is_not_proven() -> None:
-    """
-    Each spec that is left out is one, and stands in the README.
-    """
-    readme = (SPECS.parent / "README.md").read_text(encoding="utf-8")
-    passage = readme[readme.index("**The arithmetic**") : readme.index("### The simulators")]
-
-    assert set(NOT_PROVEN) <= {path.stem for path in EVERY_SPEC}
-    assert [spec for spec in NOT_PROVEN if f"`{spec}`" not in passage] == []
 
 
 def test_what_is_meant_is_there() -> None:
