@@ -18,9 +18,9 @@ _DRIVE = Control.DRV_EN
 _EVENTS = _DRIVE | Control.SPEED_VARIABLE | Control.UPDATE_STEPS
 _PERIOD = 4_000
 _SHORT_PERIOD = 1_100
-_LONG_PERIOD = (
-    65_600  # the next prescaler of fast PWM; a multiple of it, so that nothing is cut off
-)
+# The next prescaler of fast PWM; a multiple of it, so that nothing is cut off. With timing compare
+# the last lap is far enough before the step that no command meets both.
+_LONG_PERIOD = 67_200
 _LATER = _LONG_PERIOD + _PERIOD
 _RUN_STEPS = 256  # the count of the interrupt starts anew with the first step, then each 255
 AFTER_CYCLES = 40  # the call begins up to so many clocks after the interrupt has returned
