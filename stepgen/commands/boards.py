@@ -67,13 +67,15 @@ def _board_row(board: Board) -> Row:
         mcu.title,
         f"{board.f_cpu_hz / 1e6:g} MHz",
         f"{mcu.flash_bytes // _KIB} KiB",
-        f"{mcu.ram_bytes // _KIB} KiB",
+        f"{mcu.ram_bytes / _KIB:g} KiB",
         ", ".join(str(timer.number) for timer in mcu.timers16),
     )
 
 
 def _pin_rows(board: Board) -> Iterable[Row]:
-    yield from ((pin.label, pin.bit.name, ", ".join(pin.uses)) for pin in board.pins)
+    yield from (
+        (pin.label, pin.bit.name, ", ".join((*pin.also, *pin.uses))) for pin in board.pins
+    )
     yield from ((label, "-", "analog input only") for label in board.analog_inputs)
 
 

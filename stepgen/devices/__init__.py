@@ -5,6 +5,7 @@ What datasheets and boards say: chips, ports, timers, vectors, pins, and other l
 from stepgen.devices.catalogue import boards, find_board
 from stepgen.devices.drivers import DRIVERS, PulseTimes, StepDriver
 from stepgen.devices.interrupts import (
+    CORE,
     INTERRUPTS,
     MILLIS,
     UNBOUND,
@@ -32,6 +33,7 @@ from stepgen.devices.model import (
 from stepgen.devices.sockets import SHIELDS, Socket, SocketShield
 
 __all__ = [
+    "CORE",
     "DRIVERS",
     "INTERRUPTS",
     "MILLIS",

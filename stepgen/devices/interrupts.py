@@ -16,6 +16,8 @@ _MILLIS_SPACING_CYCLES = 64 * 256  # timer 0: prescaler 64, 256 ticks
 # A frame at 115200 baud lasts 10 bits. The core makes a bit of 136 clocks at 16 MHz, of 72 at 8,
 # and a sender's stop bit may be cut short by up to half a bit: 9.5 bits are 80.75 and 85.5 us.
 _SERIAL_SPACING_US = 80
+# A frame of USB lasts 1 ms give or take 500 ns (USB 2.0, 7.1.12), and the chip's clock is a crystal.
+_USB_FRAME_US = 999
 _SERVO_PULSE_US = 544  # MIN_PULSE_WIDTH
 _TONE_SPACING_US = 100  # 5 kHz: two interrupts a period
 _SERVO_BASIS = (
@@ -82,12 +84,14 @@ class UnboundInterrupt:
     Args:
         why: What makes it so, in words that follow the library's name.
         assumed: What *microseconds* assumes.
+        vector: The vector that it is about; a chip without it has no such thing.
         microseconds: How long it has other interrupts wait then, beside *cycles*.
         cycles: What of it depends on the clock.
     """
 
     why: str
     assumed: str
+    vector: str
     microseconds: int
     cycles: int
 
@@ -131,6 +135,18 @@ MILLIS = LibraryInterrupt(
     spacing_cycles=_MILLIS_SPACING_CYCLES,
 )
 
+# On a chip with USB the core always has it on, whether the sketch uses Serial or not. It is plugged
+# in or not: without a computer no frame begins.
+USB_FRAME = LibraryInterrupt(
+    "the USB interrupt of a frame",
+    "USB_GEN_vect",
+    cycles=150,
+    spacing_us=_USB_FRAME_US,
+)
+
+CORE: Mapping[str, LibraryInterrupt] = MappingProxyType({"millis": MILLIS, "USB": USB_FRAME})
+"""What the core has beside every sketch, on the chips that have these vectors."""
+
 # What a spec's `uses` calls it -> its interrupts; what is not here has none. Sources: the Arduino
 # AVR core 1.8 and, for Servo, arduino-libraries/Servo (src/avr).
 INTERRUPTS: Mapping[str, tuple[LibraryInterrupt, ...]] = MappingProxyType(
@@ -166,11 +182,28 @@ INTERRUPTS: Mapping[str, tuple[LibraryInterrupt, ...]] = MappingProxyType(
     }
 )
 
+# What a spec's `uses` calls it, or USB, which the core has on wherever the chip has it.
 UNBOUND: Mapping[str, UnboundInterrupt] = MappingProxyType(
     {
+        "USB": UnboundInterrupt(
+            "waits in its interrupt for the computer while the board is plugged in and while a "
+            "program there opens or closes the port",
+            "1 ms, a frame",
+            "USB_COM_vect",
+            microseconds=1000,
+            cycles=1000,
+        ),
+        "Serial": UnboundInterrupt(
+            "keeps interrupts off while it copies what it sends over USB",
+            "64 bytes at once, as many as there is room for",
+            "USB_COM_vect",
+            microseconds=0,
+            cycles=64 * 12 + 100,
+        ),
         "SoftwareSerial": UnboundInterrupt(
             "keeps interrupts off while it receives or sends a byte",
             "ten bit times at 9600 baud",
+            "PCINT0_vect",
             microseconds=1042,
             cycles=150,
         ),
@@ -178,6 +211,7 @@ UNBOUND: Mapping[str, UnboundInterrupt] = MappingProxyType(
             "waits in its interrupt for the bus, and calls there what onReceive() and onRequest() "
             "were given",
             "40 us, as a master on a bus of 100 kHz",
+            "TWI_vect",
             microseconds=40,
             cycles=0,
         ),

@@ -4,7 +4,7 @@ What other libraries of a sketch take: timers, vectors and pins, board by board.
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 from stepgen.devices.model import Board, Mcu, PortBit, Vector
@@ -40,20 +40,20 @@ class SketchLibrary:
     A library's needs, for any board.
 
     Args:
-        timers: Numbers of the timers it takes on most chips.
-        timers_of_mcu: The same for the chips where it is different.
+        timers: Numbers of the timers it takes.
         timer_event: The vector it takes of each timer: ``COMPA``, ``OVF``, or "" for none.
         vectors: Pattern of the other vectors it defines, or "" for none.
         pin_uses: The uses of a board's pins that are for it.
         objects_per_timer: As in `LibraryClaims`.
+        of_mcu: The needs on the chips where they are different.
     """
 
     timers: tuple[int, ...] = ()
-    timers_of_mcu: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     timer_event: str = ""
     vectors: str = ""
     pin_uses: tuple[str, ...] = ()
     objects_per_timer: int | None = None
+    of_mcu: "Mapping[str, SketchLibrary]" = field(default_factory=dict)
 
 
 def _usart(port_name: str, digit: str) -> SketchLibrary:
@@ -63,26 +63,29 @@ def _usart(port_name: str, digit: str) -> SketchLibrary:
     )
 
 
+_SERVO = SketchLibrary(timers=(1,), timer_event="COMPA", objects_per_timer=_SERVOS_PER_TIMER)
+_SERVO_OF_MEGAS = replace(_SERVO, timers=(5, 1, 3, 4))
+_TONE = SketchLibrary(timers=(2,), timer_event="COMPA")  # and any pin
+_USB = SketchLibrary(vectors="USB_(GEN|COM)_vect")  # the chip's own USB, which has no other pins
+
+def _on(library: SketchLibrary, *mcus: str) -> Mapping[str, SketchLibrary]:
+    return MappingProxyType(dict.fromkeys(mcus, library))
+
+
 # Names that a sketch may list in `uses`. Sources: the Arduino AVR core 1.8 and, for Servo,
 # ServoTimers.h and Servo.cpp of arduino-libraries/Servo (src/avr).
 SKETCH_LIBRARIES: Mapping[str, SketchLibrary] = MappingProxyType(
     {
         "millis": SketchLibrary(timers=(0,), timer_event="OVF"),
-        "Serial": _usart("Serial", "0?"),  # a chip with one USART does not number it
+        # A chip with one USART does not number it, or has it for Serial1.
+        "Serial": replace(_usart("Serial", "0?"), of_mcu=_on(_USB, "atmega32u4")),
         "Serial1": _usart("Serial1", "1"),
         "Serial2": _usart("Serial2", "2"),
         "Serial3": _usart("Serial3", "3"),
-        "Servo": SketchLibrary(
-            timers=(1,),
-            timers_of_mcu=MappingProxyType(
-                dict.fromkeys(("atmega1280", "atmega2560"), (5, 1, 3, 4))
-            ),
-            timer_event="COMPA",
-            objects_per_timer=_SERVOS_PER_TIMER,
-        ),
+        "Servo": replace(_SERVO, of_mcu=_on(_SERVO_OF_MEGAS, "atmega1280", "atmega2560")),
         "SoftwareSerial": SketchLibrary(vectors=r"PCINT\d_vect"),  # and any pins
         "SPI": SketchLibrary(pin_uses=("SPI SS", "SPI MOSI", "SPI MISO", "SPI SCK")),
-        "tone": SketchLibrary(timers=(2,), timer_event="COMPA"),  # and any pin
+        "tone": replace(_TONE, of_mcu=_on(replace(_TONE, timers=(3,)), "atmega32u4")),
         "Wire": SketchLibrary(vectors="TWI_vect", pin_uses=("I2C SDA", "I2C SCL")),
     }
 )
@@ -95,11 +98,12 @@ def library_claims(name: str, board: Board) -> LibraryClaims | None:
     None where the name is not in `SKETCH_LIBRARIES`, or the board lacks what the library
     needs: there is no Serial1 on the Uno.
     """
-    library = SKETCH_LIBRARIES.get(name)
-    if library is None:
+    usual = SKETCH_LIBRARIES.get(name)
+    if usual is None:
         return None
-    timers = library.timers_of_mcu.get(board.mcu.name, library.timers)
-    vectors = _vectors(library, timers, board.mcu)
+    library = usual.of_mcu.get(board.mcu.name, usual)
+    timers = library.timers
+    vectors = _vectors(library, board.mcu)
     pins = tuple(pin.bit for pin in board.pins if set(pin.uses) & set(library.pin_uses))
     wanted_events = len(timers) if library.timer_event else 0
     is_complete = len(pins) == len(library.pin_uses) and len(vectors) >= (
@@ -110,11 +114,11 @@ def library_claims(name: str, board: Board) -> LibraryClaims | None:
     return LibraryClaims(name, timers, vectors, pins, library.objects_per_timer)
 
 
-def _vectors(library: SketchLibrary, timers: tuple[int, ...], mcu: Mcu) -> tuple[Vector, ...]:
+def _vectors(library: SketchLibrary, mcu: Mcu) -> tuple[Vector, ...]:
     """
-    Return those vectors of *mcu* that *library* defines when it takes *timers*.
+    Return those vectors of *mcu* that *library* defines.
     """
-    events = {f"TIMER{number}_{library.timer_event}_vect" for number in timers}
+    events = {f"TIMER{number}_{library.timer_event}_vect" for number in library.timers}
     return tuple(
         vector
         for vector in mcu.vectors

@@ -259,19 +259,21 @@ class Pin:
         uses: What else it is for, as people look for it: ``Serial1 TX``, ``SPI SS``,
             ``I2C SDA``, ``LED``, ``INT0`` (the chip's number, which names the vector),
             ``PWM OC1A`` (what analogWrite() switches on).
+        also: What else is printed beside it: the Leonardo's D4 is ``A6``, too.
     """
 
     label: str
     number: int
     bit: PortBit
     uses: tuple[str, ...] = ()
+    also: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
         """
         Return all that the pin goes by: ``A0``, ``14``, ``D14`` and ``PC0``.
         """
-        return (self.label, str(self.number), f"D{self.number}", self.bit.name)
+        return (self.label, str(self.number), f"D{self.number}", self.bit.name, *self.also)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,8 @@ What boards look like from above: outlines and header positions, for pictures of
 
 All lengths are in mil (1/1000 inch) from the upper left corner, x to the right and y down, with the
 USB connector on the left. Sources: the mechanical drawings of Arduino's boards (Uno and Mega share
-the shield headers, with 160 mil between D7 and D8) and of SparkFun's Pro Mini. They are good for a
+the shield headers, with 160 mil between D7 and D8) and of SparkFun's Pro Mini; those of the Micro,
+and where the Leonardo has its ICSP header and its LED RX, are from memory. They are good for a
 picture, not for making a board.
 """
 
@@ -111,7 +112,7 @@ _USB_B = Part("USB", -250, 375, 625, 450)
 _JACK = Part("power", -75, 1625, 525, 350)
 
 UNO = Outline(
-    boards=("uno",),
+    boards=("uno", "duemilanove"),
     width=2700,
     height=2100,
     corners=(
@@ -140,8 +141,26 @@ ETHERNET = replace(
     UNO, boards=("ethernet",), parts=(Part("Ethernet", -80, 325, 860, 640), *UNO.parts[1:])
 )
 
+LEONARDO = replace(
+    UNO,
+    boards=("leonardo",),
+    headers=(
+        *UNO.headers,
+        Header("D14 D15", 2450, 1000, "right", downward=True, is_inner=True),
+        Header("D16", 2550, 1100, "right", downward=True),
+        Header("D17", 1000, 450, "up", is_inner=True),  # the LED RX
+    ),
+    parts=(Part("USB", -60, 500, 330, 320), *UNO.parts[1:]),
+)
+
+LEONARDO_ETH = replace(
+    LEONARDO,
+    boards=("leonardo-eth",),
+    parts=(Part("Ethernet", -80, 325, 860, 640), *UNO.parts[1:]),
+)
+
 MEGA = Outline(
-    boards=("mega", "mega1280"),
+    boards=("mega", "mega1280", "mega-adk"),
     width=4000,
     height=2100,
     corners=(
@@ -210,7 +229,20 @@ PRO_MINI = Outline(
     title=(670, 490),
 )
 
-OUTLINES = (UNO, UNO_MINI, ETHERNET, MEGA, NANO, PRO_MINI)
+MICRO = Outline(
+    boards=("micro",),
+    width=1900,
+    height=700,
+    corners=((0, 0), (1900, 0), (1900, 700), (0, 700)),
+    headers=(
+        Header("D12 D11 D10 D9 D8 D7 D6 D5 D4 D3 D2 GND RST D0 D1 D17 D16", 150, 50, "up"),
+        Header("D13 3V3 AREF A0 A1 A2 A3 A4 A5 - - 5V RST GND VIN D14 D15", 150, 650, "down"),
+    ),
+    parts=(Part("USB", -60, 200, 300, 300), Part("chip", 700, 220, 280, 280)),
+    title=(1250, 370),
+)
+
+OUTLINES = (UNO, UNO_MINI, ETHERNET, LEONARDO, LEONARDO_ETH, MEGA, NANO, MICRO, PRO_MINI)
 
 
 def outline_of(board: Board) -> Outline:

@@ -37,8 +37,14 @@ def port(letter: str, pin_address: int, bits: Sequence[int]) -> Port:
 def vectors(names: str) -> tuple[Vector, ...]:
     """
     Return the vectors 1, 2, 3 ... from *names*, separated by blanks, without ``_vect``.
+
+    A "-" is a reserved one, which is left out.
     """
-    return tuple(Vector(f"{name}_vect", number) for number, name in enumerate(names.split(), 1))
+    return tuple(
+        Vector(f"{name}_vect", number)
+        for number, name in enumerate(names.split(), 1)
+        if name != "-"
+    )
 
 
 def timer16(
@@ -51,18 +57,18 @@ def timer16(
     """
     Return a 16-bit timer, whose registers lie alike on every classic ATmega.
 
-    From *base* on: TCCRnA, B, C, a gap, TCNTn, ICRn, OCRnA, OCRnB and, where *outputs* has
-    a channel C, OCRnC, two bytes each; TIMSKn is 0x6E + n and TIFRn 0x35 + n.
+    From *base* on: TCCRnA, B, C, a gap, TCNTn, ICRn, OCRnA, OCRnB and, where *table* has a
+    vector of channel C, OCRnC, two bytes each; TIMSKn is 0x6E + n and TIFRn 0x35 + n.
 
     Args:
         number: The n of TCCRnA.
         base: Data-space address of TCCRnA.
         table: The chip's vectors.
-        outputs: Pin of each compare channel, such as ``{"A": "PB1"}``.
+        outputs: Pin of each compare channel that has one, such as ``{"A": "PB1"}``.
         capture_input: Pin ICPn.
     """
     by_name = {vector.name: vector for vector in table}
-    has_c = "C" in outputs
+    compc = by_name.get(f"TIMER{number}_COMPC_vect")
     return Timer16(
         number=number,
         tccra=Register(f"TCCR{number}A", base),
@@ -72,13 +78,13 @@ def timer16(
         icr=Register(f"ICR{number}", base + 6),
         ocra=Register(f"OCR{number}A", base + 8),
         ocrb=Register(f"OCR{number}B", base + 10),
-        ocrc=Register(f"OCR{number}C", base + 12) if has_c else None,
+        ocrc=Register(f"OCR{number}C", base + 12) if compc else None,
         timsk=Register(f"TIMSK{number}", 0x6E + number),
         tifr=Register(f"TIFR{number}", 0x35 + number),
         capt=by_name[f"TIMER{number}_CAPT_vect"],
         compa=by_name[f"TIMER{number}_COMPA_vect"],
         compb=by_name[f"TIMER{number}_COMPB_vect"],
-        compc=by_name[f"TIMER{number}_COMPC_vect"] if has_c else None,
+        compc=compc,
         ovf=by_name[f"TIMER{number}_OVF_vect"],
         outputs=tuple((channel, port_bit(name)) for channel, name in outputs.items()),
         capture_input=port_bit(capture_input),
@@ -114,12 +120,16 @@ def header_pins(table: str) -> tuple[Pin, ...]:
     """
     Return the pins 0, 1, 2 ... from *table*: a line ``label bit uses`` each.
 
-    Uses are separated by commas: ``D11 PB3 SPI MOSI, PWM OC2A``.
+    Uses are separated by commas: ``D11 PB3 SPI MOSI, PWM OC2A``. A label may have a second one
+    behind a slash: ``D4/A6``.
     """
     rows = (line.split(maxsplit=2) for line in table.strip().splitlines())
-    return tuple(
-        Pin(row[0], number, port_bit(row[1]), _uses(row[2:])) for number, row in enumerate(rows)
-    )
+    return tuple(_header_pin(number, *row) for number, row in enumerate(rows))
+
+
+def _header_pin(number: int, labels: str, bit: str, *uses: str) -> Pin:
+    label, *others = labels.split("/")
+    return Pin(label, number, port_bit(bit), _uses(uses), tuple(others))
 
 
 def _uses(column: Sequence[str]) -> tuple[str, ...]:

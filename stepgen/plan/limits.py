@@ -3,16 +3,15 @@ The highest safe step rate, and how long interrupts may be off: what `stepgen.pl
 """
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from stepgen.devices import INTERRUPTS, MILLIS, Board, LibraryInterrupt
+from stepgen.devices import CORE, INTERRUPTS, Board, LibraryInterrupt
 from stepgen.plan.model import HeldOff, MotorPlan, Part, RateLimit
 from stepgen.plan.timings import plan_cadence
 from stepgen.plan.uses import Use
 from stepgen.plan.waits import MainLine, Source, Wait, longest_wait
 
-_CORE = Use("millis", (), (), ())
 _SHOWN_RATES = (100, 500, 1000, 2000, 5000, 10_000)
 
 
@@ -79,8 +78,10 @@ def situations(alone: Chip, uses: Collection[Use]) -> Iterator[tuple[str, Chip]]
     Of *uses* those count whose interrupts have a bound; the others get a warning.
     """
     yield "alone", alone
-    millis = tuple(_sources(MILLIS, _CORE, alone.board))
-    yield "beside millis", replace(alone, beside=millis)
+    core = {name: _of_core(name, alone.board) for name in CORE}
+    core = {name: sources for name, sources in core.items() if sources}
+    of_core = tuple(source for sources in core.values() for source in sources)
+    yield _beside(core), replace(alone, beside=of_core)
     named = {
         use.name: tuple(
             source
@@ -91,7 +92,6 @@ def situations(alone: Chip, uses: Collection[Use]) -> Iterator[tuple[str, Chip]]
         if use.name in INTERRUPTS
     }
     if named:
-        *names, last = ("millis", *named)
         others = tuple(source for sources in named.values() for source in sources)
         unproven = {
             name: interrupt.basis
@@ -99,8 +99,13 @@ def situations(alone: Chip, uses: Collection[Use]) -> Iterator[tuple[str, Chip]]
             for interrupt in INTERRUPTS[name]
             if not interrupt.is_proven_on(alone.board.mcu)
         }
-        chip = replace(alone, beside=millis + others, unproven=unproven)
-        yield f"beside {', '.join(names)} and {last}", chip
+        chip = replace(alone, beside=of_core + others, unproven=unproven)
+        yield _beside([*core, *named]), chip
+
+
+def _beside(names: Iterable[str]) -> str:
+    *first, last = names
+    return f"beside {', '.join(first)} and {last}" if first else f"beside {last}"
 
 
 def everything(alone: Chip, uses: Collection[Use]) -> Chip:
@@ -109,6 +114,10 @@ def everything(alone: Chip, uses: Collection[Use]) -> Chip:
     """
     *_, (_, chip) = situations(alone, uses)
     return chip
+
+
+def _of_core(name: str, board: Board) -> tuple[Source, ...]:
+    return tuple(_sources(CORE[name], Use(name, (), (), ()), board))
 
 
 def _sources(interrupt: LibraryInterrupt, use: Use, board: Board) -> Iterator[Source]:

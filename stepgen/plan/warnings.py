@@ -8,7 +8,7 @@ it does not name may be used all the same, so what it would miss is said here.
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from stepgen.devices import SKETCH_LIBRARIES, UNBOUND, LibraryClaims, Pin, library_claims
+from stepgen.devices import CORE, SKETCH_LIBRARIES, UNBOUND, LibraryClaims, Pin, library_claims
 from stepgen.plan.limits import Chip, everything, shortest_period
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.timings import way_out
@@ -54,12 +54,13 @@ def plan_warnings(plan: Plan) -> tuple[PlanWarning, ...]:
 
 def _unbound_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
     """
-    Yield the libraries in `uses` that can hold up *motor* for longer than anything bounds.
+    Yield what of the core and of `uses` can hold up *motor* for longer than anything bounds.
     """
     uses = accepted_uses(plan.uses, plan.board)
-    for use in uses:
-        unbound = UNBOUND.get(use.name)
-        if unbound is None:
+    vectors = {vector.name for vector in plan.board.mcu.vectors}
+    for name in (*CORE, *(use.name for use in uses)):
+        unbound = UNBOUND.get(name)
+        if unbound is None or unbound.vector not in vectors:
             continue
         f_cpu = plan.board.f_cpu_hz
         held = unbound.microseconds * f_cpu // 1_000_000 + unbound.cycles
@@ -70,7 +71,7 @@ def _unbound_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
         if period is not None:
             allowed = f"up to {f_cpu // period} steps/s are safe"
         yield (
-            f"nothing bounds {use.name}, which {unbound.why}: it is not in the highest rate; if it "
+            f"nothing bounds {name}, which {unbound.why}: it is not in the highest rate; if it "
             f"takes {unbound.assumed}, {allowed} beside it"
         )
 

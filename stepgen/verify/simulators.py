@@ -59,7 +59,7 @@ class Machine(Protocol):
         """Return the address of a variable or function."""
 
     def send_serial(self, data: bytes) -> None:
-        """Let *data* arrive at USART0."""
+        """Let *data* arrive at the first USART."""
 
     def drive_pin(self, pin_address: int, bit: int, *, high: bool) -> None:
         """Pull a pin high or low from outside."""
@@ -140,11 +140,11 @@ _YASIMAVR_CYCLES = 3_200_000
 
 # Interrupts that a mask holds back, and when they may come.
 _MASKING = {"sei-delay", "masked-flag"}
-_RESPONSES = {"response", "response-1280", "response-2560", "wake-up"}
+_RESPONSES = {"response", "response-32u4", "response-1280", "response-2560", "wake-up"}
 
 SIMAVR = Simulator(
     "simavr",
-    frozenset({"atmega328p", "atmega1280", "atmega2560"}),
+    frozenset({"atmega328p", "atmega32u4", "atmega1280", "atmega2560"}),
     simavr.find_version,
     simavr.Machine,
     simavr.INSTALL,
@@ -167,7 +167,7 @@ SIMAVR = Simulator(
 )
 AVR8JS = Simulator(
     "avr8js",
-    frozenset({"atmega328p", "atmega1280", "atmega2560"}),
+    frozenset({"atmega328p", "atmega32u4", "atmega1280", "atmega2560"}),
     avr8js.find_version,
     avr8js.Machine,
     avr8js.INSTALL,
@@ -175,7 +175,8 @@ AVR8JS = Simulator(
     corrected=frozenset(
         {"prescaler-phase", "count-kept", "start-order", "flag-sbi", "port-write-cycles"}
         | {"ctc-wrap", "compare-flag-edge", "timer2-compare"}
-        | {"instruction-cycles", "instruction-cycles-1280", "instruction-cycles-2560"}
+        | {"instruction-cycles", "instruction-cycles-32u4", "usb-frames"}
+        | {"instruction-cycles-1280", "instruction-cycles-2560"}
         | _MASKING
         | _RESPONSES
     ),

@@ -273,7 +273,7 @@ def test_simavrs_own_timer_wakes_with_the_same_delay(start: Start) -> None:
     """
     Timer 0, which simavr itself simulates, wakes from sleep with the chip's response, too.
     """
-    machine = start("four_timers", mcu="atmega2560")
+    machine = start("all_timers", mcu="atmega2560")
     machine.run_until(100_000)
     events = machine.events()
     left = of_kind(events, Kind.ISR_EXIT)
@@ -495,7 +495,7 @@ def test_unknown_chip_is_refused(start: Start, tmp_path: Path) -> None:
     """
     start("stack").close()
 
-    with pytest.raises(StepgenError, match=r"attiny13.* atmega328p, atmega1280 and atmega2560"):
+    with pytest.raises(StepgenError, match=r"attiny13.* atmega328p, atmega32u4, atmega1280 and atmega2560"):
         Machine(tmp_path / "stack.elf", mcu="attiny13", f_cpu_hz=F_CPU_HZ)
 
 

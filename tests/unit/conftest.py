@@ -142,6 +142,7 @@ def core_flags(board: Board) -> tuple[str, ...]:
         "-DARDUINO=10819",
         "-DARDUINO_ARCH_AVR",
         "-DDECIMAL_DIG=__DECIMAL_DIG__",
+        *("-DUSB_VID=0x2341", "-DUSB_PID=0x8036"),  # of a board with USB; any will do
     )
 
 
@@ -174,7 +175,9 @@ def compile_core(core_flags: tuple[str, ...], tmp_path: Path) -> Callable[[Path]
     def compile_file(source: Path) -> Path:
         target = tmp_path / f"{source.name}.o"
         compiler = "avr-gcc" if source.suffix == ".c" else "avr-g++"
-        _run(compiler, *core_flags, f"-I{source.parent}", "-Os", "-c", source, "-o", target)
+        standard = "-std=gnu11" if source.suffix == ".c" else "-std=gnu++11"
+        options = (standard, f"-I{source.parent}", "-Os")
+        _run(compiler, *core_flags, *options, "-c", source, "-o", target)
         return target
 
     return compile_file

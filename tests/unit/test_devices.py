@@ -12,13 +12,15 @@ from stepgen.devices import Board, Mcu, PortBit, Register, Timer, Vector
 # Where the datasheets' chapters "Alternate Port Functions" put ICPn.
 CAPTURE_INPUTS = {
     "atmega328p": {1: "PB0"},
+    "atmega32u4": {1: "PD4", 3: "PC7"},
     "atmega1280": {1: "PD4", 3: "PE7", 4: "PL0", 5: "PL1"},
     "atmega2560": {1: "PD4", 3: "PE7", 4: "PL0", 5: "PL1"},
 }
 # Compare outputs that analogWrite() does not use, from the same chapters: the core gives the
-# Mega's PB7 to OC0A.
+# PB7 of the Mega and of the ATmega32U4 to OC0A.
 OTHER_OUTPUTS: dict[str, set[tuple[int, str, str]]] = {
     "atmega328p": set(),
+    "atmega32u4": {(1, "C", "PB7")},
     "atmega1280": {(1, "C", "PB7")},
     "atmega2560": {(1, "C", "PB7")},
 }
@@ -74,9 +76,9 @@ def test_all_vectors_are_listed_with_their_numbers(mcu: Mcu, libc_vectors: dict[
 
 def test_all_16_bit_timers_are_listed(mcu: Mcu, libc_registers: dict[str, int]) -> None:
     """
-    The 16-bit timers are those whose counter has a high byte in avr-libc.
+    The 16-bit timers are those with an input capture register in avr-libc.
     """
-    numbers = sorted(int(name[4]) for name in libc_registers if re.fullmatch(r"TCNT\dH", name))
+    numbers = sorted(int(name[3]) for name in libc_registers if re.fullmatch(r"ICR\dH", name))
 
     assert [timer.number for timer in mcu.timers16] == numbers
 
@@ -105,21 +107,26 @@ def test_the_only_8_bit_timer_beside_the_cores_is_timer_2(
     mcu: Mcu, libc_registers: dict[str, int], libc_vectors: dict[str, int]
 ) -> None:
     """
-    Timers without a high byte are 0, which counts milliseconds, and 2: each field by its name.
-    """
-    counters = {name for name in libc_registers if re.fullmatch(r"TCNT\d", name)}
-    wide = {name for name in counters if f"{name}H" in libc_registers}
+    Timers without a high byte are 0, which counts milliseconds, and perhaps 2: all by their names.
 
-    (timer,) = mcu.timers8
-    assert counters - wide == {"TCNT0", "TCNT2"}
-    names = {field.name: getattr(timer, field.name) for field in fields(timer)}
-    for field, value in names.items():
-        if isinstance(value, Register):
-            assert value.name == re.sub(r"^(tccr|tcnt|ocr|timsk|tifr)", r"\g<1>2", field).upper()
-        if isinstance(value, Vector):
-            assert value.name == f"TIMER2_{field.upper()}_vect"
-            assert value.number == libc_vectors[value.name]
-    assert {mcu.timer8(2), mcu.timer8(0), mcu.timer8(1)} == {timer, None}
+    A timer is there if it has vectors: avr-libc gives the ATmega32U4 registers of a timer 2.
+    """
+    found = (re.fullmatch(r"TIMER(\d)_OVF_vect", name) for name in libc_vectors)
+    numbers = {int(match[1]) for match in found if match}
+    small = {number for number in numbers if f"TCNT{number}H" not in libc_registers}
+
+    assert {timer.number for timer in mcu.timers8} == small - {0}
+    assert small <= {0, 2}
+    for timer in mcu.timers8:
+        names = {field.name: getattr(timer, field.name) for field in fields(timer)}
+        for field, value in names.items():
+            if isinstance(value, Register):
+                wanted = re.sub(r"^(tccr|tcnt|ocr|timsk|tifr)", r"\g<1>2", field).upper()
+                assert value.name == wanted
+            if isinstance(value, Vector):
+                assert value.name == f"TIMER2_{field.upper()}_vect"
+                assert value.number == libc_vectors[value.name]
+    assert {mcu.timer8(2), mcu.timer8(0), mcu.timer8(1)} == {*mcu.timers8, None}
 
 
 def test_timer_pins_are_those_of_the_core_and_the_datasheet(
@@ -157,7 +164,8 @@ def test_chip_sizes_and_response_are_the_compilers(
     """
     assert mcu.flash_bytes == libc_numbers["FLASHEND"] + 1
     assert mcu.ram_start == libc_numbers["RAMSTART"]
-    assert mcu.ram_start + mcu.ram_bytes == libc_numbers["RAMEND"] + 1
+    end = libc_numbers.get("RAMEND")  # that of the ATmega32U4 is RAMSTART + RAMSIZE - 1
+    assert mcu.ram_bytes == (end + 1 - mcu.ram_start if end else libc_numbers["RAMSIZE"])
     assert mcu.response_cycles == (5 if "__AVR_3_BYTE_PC__" in libc_macros else 4)
     assert mcu.macro in libc_macros
     assert mcu.macro == f"__AVR_{mcu.title}__"

@@ -19,8 +19,11 @@ MEGA_SERIAL_PINS = {
     "Serial3 RX": "PJ0",
     "Serial3 TX": "PJ1",
 }
+# Pins of the core that no header has: the Leonardo's LED TX.
+NO_HEADER = {"atmega32u4": ["PD5"]}
 SERIAL_PINS = {
     "atmega328p": {"Serial RX": "PD0", "Serial TX": "PD1"},
+    "atmega32u4": {"Serial1 RX": "PD2", "Serial1 TX": "PD3"},
     "atmega1280": MEGA_SERIAL_PINS,
     "atmega2560": MEGA_SERIAL_PINS,
 }
@@ -42,6 +45,8 @@ def test_every_pin_is_where_the_core_has_it(
 ) -> None:
     """
     The header pins are all digital pins of the variant, each on the core's port and bit.
+
+    What the core numbers once more is a pin that it has already, or on no header.
     """
     words = pin_tables["port_to_output_PGM"]
     outputs = [int.from_bytes(words[i : i + 2], "little") for i in range(0, len(words), 2)]
@@ -49,17 +54,25 @@ def test_every_pin_is_where_the_core_has_it(
     ports = [letters[outputs[code]] for code in pin_tables["digital_pin_to_port_PGM"]]
     masks = list(pin_tables["digital_pin_to_bit_mask_PGM"])
 
-    assert [pin.number for pin in board.pins] == list(range(core_numbers["NUM_DIGITAL_PINS"]))
-    assert [pin.bit.port for pin in board.pins] == ports
-    assert [1 << pin.bit.bit for pin in board.pins] == masks
+    bits = [f"P{letter}{mask.bit_length() - 1}" for letter, mask in zip(ports, masks, strict=True)]
+    count = len(board.pins)
+    once_more = [bit for bit in bits[count:] if bit not in bits[:count]]
+
+    assert [pin.number for pin in board.pins] == list(range(count))
+    assert len(bits) == core_numbers["NUM_DIGITAL_PINS"]
+    assert [pin.bit.name for pin in board.pins] == bits[:count]
+    assert once_more == NO_HEADER.get(board.mcu.name, [])
     assert all(pin.bit.bit in board.mcu.port(pin.bit.port).bits for pin in board.pins)
 
 
-def test_labels_are_those_on_the_board(board: Board, core_numbers: dict[str, int]) -> None:
+def test_labels_are_those_on_the_board(
+    board: Board, pin_tables: dict[str, bytes], core_numbers: dict[str, int]
+) -> None:
     """
     Pins that are analog inputs are labelled A0 and so on, the others by their number.
 
-    The core numbers those that are no port bits behind its last digital pin.
+    The core numbers those that are no port bits behind its last digital pin, and those of the
+    Leonardo that are other pins, too, behind the last pin on a header.
     """
     inputs = range(core_numbers["NUM_ANALOG_INPUTS"])
     analog = {core_numbers[f"PIN_A{number}"]: f"A{number}" for number in inputs}
@@ -71,6 +84,15 @@ def test_labels_are_those_on_the_board(board: Board, core_numbers: dict[str, int
     assert board.analog_inputs == tuple(
         label for number, label in analog.items() if number >= digital
     )
+    masks = pin_tables["digital_pin_to_bit_mask_PGM"]
+    ports = pin_tables["digital_pin_to_port_PGM"]
+    also = {
+        label: [pin.label for pin in board.pins if (ports[pin.number], masks[pin.number]) == place]
+        for number, label in analog.items()
+        if len(board.pins) <= number < digital
+        for place in [(ports[number], masks[number])]
+    }
+    assert also == {label: [pin.label] for pin in board.pins for label in pin.also}
 
 
 def test_uses_of_pins_are_those_of_the_core(

@@ -8,6 +8,8 @@ import pytest
 
 from stepgen.devices import SKETCH_LIBRARIES, Board, library_claims
 
+# On a chip with USB, Serial is that.
+USB_SOURCE = "cores/arduino/USBCore.cpp"
 SERIAL_SOURCES = {
     "Serial": "cores/arduino/HardwareSerial0.cpp",
     "Serial1": "cores/arduino/HardwareSerial1.cpp",
@@ -31,7 +33,9 @@ def test_libraries_take_the_vectors_they_define(
     """
     The vectors of a library are those in its object file; where there are none, it is absent.
     """
-    defined = vectors_defined_by(LIBRARY_SOURCES[name])
+    has_usb = any(vector.name == "USB_GEN_vect" for vector in board.mcu.vectors)
+    source = USB_SOURCE if has_usb and name == "Serial" else LIBRARY_SOURCES[name]
+    defined = vectors_defined_by(source)
     claims = library_claims(name, board)
 
     if name in SERIAL_SOURCES and not defined:
@@ -57,7 +61,10 @@ def test_libraries_take_the_pins_meant_for_them(board: Board) -> None:
 
 
 # The timers of each chip in the order of ServoTimers.h of arduino-libraries/Servo.
-SERVO_TIMERS = {"atmega328p": (1,), "atmega1280": (5, 1, 3, 4), "atmega2560": (5, 1, 3, 4)}
+SERVO_TIMERS = {
+    **{"atmega328p": (1,), "atmega32u4": (1,)},
+    **{"atmega1280": (5, 1, 3, 4), "atmega2560": (5, 1, 3, 4)},
+}
 
 
 def test_servo_takes_timers_as_servos_are_attached(board: Board) -> None:

@@ -48,6 +48,11 @@ def plan(spec: Compare, board: Board, free: tuple[int, ...], faults: Faults) -> 
     narrow = [number for number in free if number in timers]
     number = next(iter((*narrow, *timers)), None) if spec.timer is None else spec.timer
     timer = None if number is None else board.mcu.timer8(number)
+    if not timers:
+        faults.at("kind").report(
+            f"the {board.title} has no 8-bit timer beside the core's; {way_out(board, free)}"
+        )
+        return None
     if timer is None:
         faults.at("timer").report(
             f"compare does not run on timer {number} of the {board.title}, only on timer {names}"

@@ -10,18 +10,21 @@ from stepgen.devices import Mcu, Timer, Timer8, Timer16, Vector
 _WORDS_PER_VECTOR = 2
 _TIMER0 = {"TIFR": 0x35, "OCRA": 0x47, "OCRB": 0x48, "TCNT": 0x46, "TCCRA": 0x44, "TCCRB": 0x45}
 _TIMER0_TIMSK = 0x6E
-_USART0 = {"UCSRA": 0xC0, "UCSRB": 0xC1, "UCSRC": 0xC2, "UBRRL": 0xC4, "UBRRH": 0xC5, "UDR": 0xC6}
+# Data addresses of UCSRnA, and where the others are from there.
+_USARTS = {"USART": 0xC0, "USART0": 0xC0, "USART1": 0xC8}
+_USART = {"UCSRA": 0, "UCSRB": 1, "UCSRC": 2, "UBRRL": 4, "UBRRH": 5, "UDR": 6}
 _CLOCK_SELECTS = range(8)
 _NO_16_BIT_REGISTERS = {"OCRC": 0, "ICR": 0, "TCCRC": 0, "captureInterrupt": 0}
+_USB = {"PLLCSR": 0x49, "UDCON": 0xE0, "UDINT": 0xE1, "UDIEN": 0xE2}
 # Bits of TIFRn and of TIMSKn, and the vectors behind them.
 _TOV, _OCFA, _OCFB, _OCFC = 1, 2, 4, 8
-# Pin change interrupts of port B, the same registers on both chips: PCICR bit 0.
+# Pin change interrupts of port B, the same registers on each chip: PCICR bit 0.
 _PIN_CHANGE_B = {"PCIE": 0, "PCICR": 0x68, "PCIFR": 0x3B, "PCMSK": 0x6B, "mask": 0xFF, "offset": 0}
 
 
 def describe(mcu: Mcu) -> dict[str, Any]:
     """
-    Return ports, timers and USART0 of *mcu* as the driver hands them to avr8js.
+    Return ports, timers, first USART and USB of *mcu* as the driver hands them to avr8js.
 
     The ADC, SPI, TWI and the watchdog are left out: a program that waits for them hangs.
     """
@@ -35,12 +38,8 @@ def describe(mcu: Mcu) -> dict[str, Any]:
             *(_timer8(timer, mcu) for timer in mcu.timers8),
             *(_timer16(timer, mcu) for timer in mcu.timers16),
         ],
-        "usart": {
-            **_USART0,
-            "rxCompleteInterrupt": _address(_usart_vector(mcu, "RX")),
-            "dataRegisterEmptyInterrupt": _address(_usart_vector(mcu, "UDRE")),
-            "txCompleteInterrupt": _address(_usart_vector(mcu, "TX")),
-        },
+        "usart": _usart(mcu),
+        "usb": _usb(mcu),
     }
 
 
@@ -138,12 +137,26 @@ def _common(bits: int, timsk: int, vectors: dict[int, Vector]) -> dict[str, Any]
     }
 
 
-def _usart_vector(mcu: Mcu, event: str) -> Vector:
+def _usart(mcu: Mcu) -> dict[str, int]:
     """
-    Return the vector of USART0, which chips with a single USART call USART.
+    Return the first USART: USART where there is one, else USART0 or, on the ATmega32U4, USART1.
     """
-    names = {f"USART_{event}_vect", f"USART0_{event}_vect"}
-    return next(vector for vector in mcu.vectors if vector.name in names)
+    vectors = {vector.name: vector for vector in mcu.vectors}
+    name = next(name for name in _USARTS if f"{name}_RX_vect" in vectors)
+    return {
+        **{register: _USARTS[name] + offset for register, offset in _USART.items()},
+        "rxCompleteInterrupt": _address(vectors[f"{name}_RX_vect"]),
+        "dataRegisterEmptyInterrupt": _address(vectors[f"{name}_UDRE_vect"]),
+        "txCompleteInterrupt": _address(vectors[f"{name}_TX_vect"]),
+    }
+
+
+def _usb(mcu: Mcu) -> dict[str, int] | None:
+    """
+    Return what of USB the driver plays the computer with; None where the chip has none.
+    """
+    found = [vector for vector in mcu.vectors if vector.name == "USB_GEN_vect"]
+    return {**_USB, "interrupt": _address(found[0])} if found else None
 
 
 def _address(vector: Vector) -> int:

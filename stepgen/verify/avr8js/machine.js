@@ -11,6 +11,7 @@ const {
   accessCycles, accessInTime, clearOnlyWrittenFlags, compareWhenLeft, countOnToMax, letPrescalerRun,
   raiseEdge,
 } = require("./timers.js");
+const { plugIn } = require("./usb.js");
 
 const KIND = {
   PORT: 1, REGISTER: 2, MARK: 3, ISR_ENTER: 4, ISR_EXIT: 5, UART: 6, MASKED: 7, UNMASKED: 8, RAISE: 9,
@@ -46,6 +47,7 @@ class Machine {
     this.timers = job.timers.map((config) => this.addTimer(config));
     this.usart = new AVRUSART(this.cpu, job.usart, job.f_cpu_hz);
     this.usart.onByteTransmit = (byte) => this.record(KIND.UART, this.writeEdge(), job.usart.UDR, byte);
+    if (job.usb && this.correct) plugIn(this.cpu, job.usb, job.f_cpu_hz, this.hookWrite.bind(this));
     this.serial = [];
     this.usart.onRxComplete = () => this.feedSerial();
     for (const port of job.ports) this.recordPort(port);

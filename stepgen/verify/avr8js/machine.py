@@ -20,7 +20,7 @@ _NO_MARK = -1
 
 class Machine(Loaded):
     """
-    An ATmega328P or ATmega2560 with a program in its flash, just out of reset.
+    An ATmega328P, ATmega32U4, ATmega1280 or ATmega2560 with a program in its flash, just out of reset.
 
     Args:
         elf: The program, as avr-gcc links it.
@@ -132,7 +132,7 @@ class Machine(Loaded):
 
     def send_serial(self, data: bytes) -> None:
         """
-        Let *data* arrive at USART0, one byte after the other.
+        Let *data* arrive at the first USART, one byte after the other.
         """
         self._driver.ask("send", bytes=list(data))
 

@@ -4,7 +4,7 @@ Judging a library by its worst case: what was measured, what was planned, what t
 
 from collections.abc import Iterator
 
-from stepgen.devices import MILLIS
+from stepgen.devices import CORE, LibraryInterrupt
 from stepgen.errors import StepgenError
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.spec import LoadedSpec
@@ -13,7 +13,6 @@ from stepgen.verify.compilers import Compiler
 from stepgen.verify.firmware import Firmware
 from stepgen.verify.report import SpecReport
 
-_MILLIS = "TIMER0_OVF_vect"
 _NAME = "worst case"
 
 
@@ -34,7 +33,12 @@ def judge_worst_case(
             for motor in plan.motors
         }
         masked = longest([program.masked(f"{plan.library.name}.cpp") for program in programs])
-        millis = longest([program.interrupt(_MILLIS) for program in programs])
+        vectors = {vector.name for vector in mcu.vectors}
+        core = [
+            (one, longest([program.interrupt(one.vector) for program in programs]))
+            for one in CORE.values()
+            if one.vector in vectors
+        ]
     except StepgenError as error:
         report.check(_NAME, tuple(fault.reason for fault in error.faults), "")
         return
@@ -42,13 +46,14 @@ def judge_worst_case(
     for motor in plan.motors:
         findings += _judge_motor(motor, steps[motor.name], loaded, report)
     findings += _over("a call can have interrupts off for", masked, plan.masked_bound_cycles)
-    findings += _over("the millis interrupt can take", millis, MILLIS.cycles)
+    for one, bound in core:
+        findings += _over(f"{one.cause} can take", bound, one.cycles)
     if report.masked_cycles > masked.cycles:
         findings.append(f"interrupts were off for {report.masked_cycles} of {masked.cycles} cycles")
     report.stack_bound_bytes = max(bound.stack_bytes for bound in steps.values())
     if report.stack_bytes > report.stack_bound_bytes:
         findings.append(f"{report.stack_bytes} of {report.stack_bound_bytes} bytes of stack")
-    report.check(_NAME, tuple(findings), _summary(plan, steps, masked, millis))
+    report.check(_NAME, tuple(findings), _summary(plan, steps, masked, core))
 
 
 def _judge_motor(
@@ -74,13 +79,18 @@ def _way(bound: Bound) -> str:
     return ", ".join(bound.path)
 
 
-def _summary(plan: Plan, steps: dict[str, Bound], masked: Bound, millis: Bound) -> str:
+def _summary(
+    plan: Plan,
+    steps: dict[str, Bound],
+    masked: Bound,
+    core: list[tuple[LibraryInterrupt, Bound]],
+) -> str:
     motors = ", ".join(
         f"{motor.name} {steps[motor.name].cycles} of {motor.isr_bound_cycles}"
         for motor in plan.motors
     )
+    others = ", ".join(f"{one.cause} {bound.cycles} of {one.cycles}" for one, bound in core)
     return (
         f"by the plan's cycles at most: step interrupt {motors}, interrupts off in a call "
-        f"{masked.cycles} of {plan.masked_bound_cycles}, millis interrupt {millis.cycles} of "
-        f"{MILLIS.cycles}"
+        f"{masked.cycles} of {plan.masked_bound_cycles}, {others}"
     )

@@ -4,8 +4,8 @@ Points about the CPU: cycles of instructions, interrupts, ports, and the small p
 
 from collections.abc import Iterator
 
-from stepgen.verify.conformance.lab import Lab, cycles, gaps, of_kind, ram
-from stepgen.verify.conformance.point import MEGA_1280_CHIP, MEGA_CHIP, Judge, point
+from stepgen.verify.conformance.lab import F_CPU_HZ, Lab, cycles, gaps, of_kind, ram
+from stepgen.verify.conformance.point import MEGA_1280_CHIP, MEGA_CHIP, USB_CHIP, Judge, point
 from stepgen.verify.events import Kind
 from stepgen.verify.simulators import Machine
 
@@ -58,6 +58,12 @@ instructions_mega_1280 = point(
     "33",
     MEGA_1280_CHIP,
 )(_instructions(0))
+instructions_32u4 = point(
+    "instruction-cycles-32u4",
+    "Cycles of each kind of instruction, ATmega32U4",
+    "DS40002198: PC of 16 bits",
+    USB_CHIP,
+)(_instructions(0))
 
 
 def _response(response: int) -> Judge:
@@ -91,6 +97,12 @@ response_mega = point(
 )(_response(5))
 response_mega_1280 = point(
     "response-1280", "Interrupt response of 4 cycles, ATmega1280", "7.8.1", MEGA_1280_CHIP
+)(_response(4))
+response_32u4 = point(
+    "response-32u4",
+    "Interrupt response of 4 cycles, ATmega32U4",
+    "DS40002198: PC of 16 bits",
+    USB_CHIP,
 )(_response(4))
 
 
@@ -228,6 +240,26 @@ def uart_status(lab: Lab) -> Iterator[str]:
         seen = ram(machine, "seen", 4)
         if seen != [0x22, 0x62, 0x62, 0x22]:
             yield f"UCSR0A is {bytes(seen).hex()}, on the chip 22626222"
+
+
+@point(
+    "usb-frames",
+    "The PLL of USB locks, and at a computer a frame begins each millisecond",
+    "Atmel-7766: 6.11, 22.18.1",
+    USB_CHIP,
+)
+def usb_frames(lab: Lab) -> Iterator[str]:
+    """
+    See PB5 toggle each 16 000 cycles, give or take the rjmp of the main loop.
+    """
+    with lab.running("usb") as machine:
+        if not machine.run_until_mark(1, limit_cycles=1000):
+            yield "the PLL does not lock"
+            return
+        machine.run_until(100_000)
+        late = [abs(gap - F_CPU_HZ // 1000) for gap in gaps(cycles(machine, Kind.PORT, PORTB))]
+        if len(late) < 4 or max(late) > 2:  # noqa: PLR2004 - five frames, one instruction
+            yield f"frames are off by {late} cycles"
 
 
 @point("pin-change", "A change of an input raises its pin change interrupt", "13.2")

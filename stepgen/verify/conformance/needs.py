@@ -10,7 +10,13 @@ from collections.abc import Mapping, Sequence
 from stepgen.errors import StepgenError
 from stepgen.plan.model import Plan
 from stepgen.verify.compilers import Compiler
-from stepgen.verify.conformance.point import MEGA_1280_CHIP, MEGA_CHIP, UNO_CHIP, Point
+from stepgen.verify.conformance.point import (
+    MEGA_1280_CHIP,
+    MEGA_CHIP,
+    UNO_CHIP,
+    USB_CHIP,
+    Point,
+)
 from stepgen.verify.conformance.points import points
 from stepgen.verify.conformance.suite import judge
 from stepgen.verify.simulators import Simulator
@@ -22,6 +28,7 @@ ALWAYS = (
 )
 OF_CHIP: Mapping[str, Sequence[str]] = {
     UNO_CHIP: ("instruction-cycles", "response"),
+    USB_CHIP: ("instruction-cycles-32u4", "response-32u4", "two-timers-32u4", "usb-frames"),
     MEGA_1280_CHIP: ("instruction-cycles-1280", "response-1280", "four-timers-1280"),
     MEGA_CHIP: ("instruction-cycles-2560", "response-2560", "four-timers"),
 }

@@ -5,7 +5,7 @@ Points about the timers. Sections are those of chapters 16 and 18 of the ATmega3
 from collections.abc import Iterator
 
 from stepgen.verify.conformance.lab import Lab, cycles, gaps, of_kind, ram
-from stepgen.verify.conformance.point import MEGA_1280_CHIP, MEGA_CHIP, Judge, point
+from stepgen.verify.conformance.point import MEGA_1280_CHIP, MEGA_CHIP, USB_CHIP, Judge, point
 from stepgen.verify.events import Kind
 
 # Data addresses, chapter 31 "Register Summary".
@@ -222,23 +222,32 @@ def timer2_moves(lab: Lab) -> Iterator[str]:
         yield from lab.differ("cycles between matches", expected, seen)
 
 
-def _four_timers(lab: Lab) -> Iterator[str]:
+def _all_timers(*vectors: int) -> Judge:
     """
-    Each with its vector (table 14-1, numbers less one) and its period.
+    Return the judge of all 16-bit timers at once, each with its vector and its period.
     """
-    with lab.running("four_timers") as machine:
-        machine.run_until(30_000)
-        for vector, period in {20: 1000, 35: 2000, 45: 3000, 50: 4000}.items():
-            seen = gaps(cycles(machine, Kind.RAISE, vector))[:4]
-            yield from lab.differ(f"periods of vector {vector}", [period] * 4, seen)
+
+    def judge(lab: Lab) -> Iterator[str]:
+        with lab.running("all_timers") as machine:
+            machine.run_until(30_000)
+            for vector, period in zip(vectors, (1000, 2000, 3000, 4000), strict=False):
+                seen = gaps(cycles(machine, Kind.RAISE, vector))[:4]
+                yield from lab.differ(f"periods of vector {vector}", [period] * 4, seen)
+
+    return judge
 
 
+# Table 14-1, numbers less one.
 four_timers = point(
     "four-timers", "Timers 1, 3, 4 and 5 of the ATmega2560 run at once", "17", MEGA_CHIP
-)(_four_timers)
+)(_all_timers(20, 35, 45, 50))
 four_timers_1280 = point(
     "four-timers-1280", "Timers 1, 3, 4 and 5 of the ATmega1280 run at once", "17", MEGA_1280_CHIP
-)(_four_timers)
+)(_all_timers(20, 35, 45, 50))
+# Atmel-7766, table "Reset and Interrupt Vectors", numbers less one.
+two_timers_32u4 = point(
+    "two-timers-32u4", "Timers 1 and 3 of the ATmega32U4 run at once", "Atmel-7766: 14", USB_CHIP
+)(_all_timers(20, 35))
 
 
 @point("compare-pins", "Compare outputs are set, toggled and cleared", "16.8")

@@ -78,6 +78,7 @@ machine *machine_new(const char *mcu, uint32_t f_cpu_hz, const uint8_t *code, ui
     interrupts_install(m);
     registers_install(m);
     serial_install(m);
+    usb_install(m);
     for (uint8_t number = 0; number < EXTINT_COUNT; number++)
         avr_extint_set_strict_lvl_trig(avr, number, 0); /* else a low INTn pin is polled each cycle */
     return m;

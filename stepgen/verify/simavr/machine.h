@@ -25,9 +25,9 @@ typedef enum {
     ROLE_SPH,
     ROLE_MARK,
     ROLE_PRESCALER,
-    ROLE_DATA,   /* UDR0 */
-    ROLE_STATUS, /* UCSR0A */
-    ROLE_CONTROL, /* UCSR0B */
+    ROLE_DATA,   /* UDRn */
+    ROLE_STATUS, /* UCSRnA */
+    ROLE_CONTROL, /* UCSRnB */
 } role;
 
 typedef struct {
@@ -73,6 +73,8 @@ struct machine {
     uint8_t *serial;
     uint32_t serial_size, serial_next, serial_lost;
 
+    avr_int_vector_t *frame_begins; /* the interrupt of USB; NULL without USB */
+
     int stop, wanted_mark, marked;
     int fine, was_enabled;
     int silent; /* record nothing */
@@ -103,5 +105,8 @@ void serial_install(machine *m);
 void serial_transmit(machine *m, uint8_t value, uint64_t edge);
 void serial_status(machine *m, uint8_t value);
 void serial_settle(machine *m);
+
+/* usb.c */
+void usb_install(machine *m);
 
 #endif

@@ -20,11 +20,11 @@ _VECTORS = 64
 
 class Machine(Loaded):
     """
-    An ATmega328P, ATmega1280 or ATmega2560 with a program in its flash, just out of reset.
+    An ATmega328P, ATmega32U4, ATmega1280 or ATmega2560 with a program in its flash, just out of reset.
 
     Args:
         elf: The program, as avr-gcc links it.
-        mcu: `atmega328p`, `atmega1280` or `atmega2560`.
+        mcu: `atmega328p`, `atmega32u4`, `atmega1280` or `atmega2560`.
         f_cpu_hz: Clock of the CPU; only simavr's own peripherals (UART, ADC) look at it.
         watch: Data addresses of I/O registers whose writes are recorded as REGISTER.
 
@@ -42,8 +42,8 @@ class Machine(Loaded):
         self._machine: Any = self._lib.machine_new(mcu.encode(), f_cpu_hz, image, len(image))
         if not self._machine:
             raise StepgenError.of(
-                "this chip cannot be simulated; the harness knows atmega328p, atmega1280 and "
-                "atmega2560",
+                "this chip cannot be simulated; the harness knows atmega328p, atmega32u4, "
+                "atmega1280 and atmega2560",
                 text=mcu,
             )
         # The events outlive the machine as long as someone looks at them.
@@ -155,7 +155,7 @@ class Machine(Loaded):
 
     def send_serial(self, data: bytes) -> None:
         """
-        Let *data* arrive at USART0, one byte per byte time, from when its receiver is on.
+        Let *data* arrive at the first USART, one byte per byte time, from when its receiver is on.
         """
         self._lib.machine_send_serial(self._open, data, len(data))
 

@@ -13,6 +13,7 @@
 
 /* The ATmega1280 is an ATmega2560 with half the flash. */
 #define MEGA_FACTS                                                                                \
+    .usart = {'0', 0xC0},                                                                         \
     .ports = "ABCDEFGHJKL",                                                                       \
     .pin_address = {0x20, 0x23, 0x26, 0x29, 0x2C, 0x2F, 0x32, 0x100, 0x103, 0x106, 0x109},        \
     .timer_count = 5,                                                                             \
@@ -29,10 +30,22 @@ static const mcu_facts MCUS[] = {
         .name = "atmega328p",
         .ports = "BCD",
         .pin_address = {0x23, 0x26, 0x29},
+        .usart = {'0', 0xC0},
         .timer_count = 2,
         .timers = {
             {'1', 0x80, 0x6F, 0x36, 2, {13, 11, 12, 0, 0, 10}, SHARED_PRESCALER},
             TIMER2(9, 7, 8),
+        },
+    },
+    {
+        .name = "atmega32u4",
+        .ports = "BCDEF",
+        .pin_address = {0x23, 0x26, 0x29, 0x2C, 0x2F},
+        .usart = {'1', 0xC8},
+        .timer_count = 2,
+        .timers = {
+            {'1', 0x80, 0x6F, 0x36, 3, {20, 17, 18, 19, 0, 16}, SHARED_PRESCALER},
+            {'3', 0x90, 0x71, 0x38, 3, {35, 32, 33, 34, 0, 31}, SHARED_PRESCALER},
         },
     },
     {.name = "atmega1280", MEGA_FACTS},

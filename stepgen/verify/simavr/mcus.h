@@ -1,4 +1,4 @@
-/* Facts of the simulated chips, from avr-libc's iom328p.h and iomxx0_1.h. */
+/* Facts of the simulated chips, from avr-libc's iom328p.h, iom32u4.h and iomxx0_1.h. */
 
 #ifndef STEPGEN_MCUS_H
 #define STEPGEN_MCUS_H
@@ -22,9 +22,15 @@ typedef struct {
 } timer_facts;
 
 typedef struct {
+    char name;                  /* '0', as simavr names it */
+    uint16_t base;              /* data address of UCSRnA; the others follow at fixed offsets */
+} usart_facts;
+
+typedef struct {
     const char *name;
     const char *ports;          /* letters */
     uint16_t pin_address[12];   /* PINx by letter; DDRx and PORTx are the next two addresses */
+    usart_facts usart;          /* the first one */
     uint8_t timer_count;
     timer_facts timers[MOST_TIMERS];
 } mcu_facts;
@@ -37,12 +43,10 @@ enum {
     ADDRESS_SPL = 0x5D,
     ADDRESS_SPH = 0x5E,
     ADDRESS_SREG = 0x5F,
-    ADDRESS_UCSR0A = 0xC0,
-    ADDRESS_UCSR0B = 0xC1,
-    ADDRESS_UCSR0C = 0xC2,
-    ADDRESS_UBRR0L = 0xC4,
-    ADDRESS_UDR0 = 0xC6,
 };
+
+/* Offsets from UCSRnA. */
+enum { UCSRA = 0, UCSRB = 1, UCSRC = 2, UBRRL = 4, UDR = 6 };
 
 /* The facts of *name*, or NULL for a chip that the harness does not know. */
 const mcu_facts *mcu_find(const char *name);

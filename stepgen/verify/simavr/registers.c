@@ -204,9 +204,9 @@ void registers_install(machine *m)
     }
     for (unsigned i = 0; i < sizeof FLAGS / sizeof FLAGS[0]; i++)
         take(m, FLAGS[i], ROLE_FLAGS);
-    take(m, ADDRESS_UDR0, ROLE_DATA);
-    take(m, ADDRESS_UCSR0A, ROLE_STATUS);
-    take(m, ADDRESS_UCSR0B, ROLE_CONTROL);
+    take(m, (uint16_t)(facts->usart.base + UDR), ROLE_DATA);
+    take(m, (uint16_t)(facts->usart.base + UCSRA), ROLE_STATUS);
+    take(m, (uint16_t)(facts->usart.base + UCSRB), ROLE_CONTROL);
     take(m, ADDRESS_SPL, ROLE_SPL);
     take(m, ADDRESS_SPH, ROLE_SPH);
     take(m, ADDRESS_EEDR, ROLE_MARK);
