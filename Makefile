@@ -80,8 +80,8 @@ lint: $(STAMPS)/dev  ## Run ruff and mypy.
 verify: setup  ## Compile, simulate and compare the library of each spec.
 	$(BIN)/stepgen verify specs/*.yaml
 
-matrix: setup  ## The same on every compiler and every simulator that is installed, in one table.
-	$(BIN)/stepgen matrix --simulator all --jobs $(JOBS)
+matrix: setup  ## The same on every compiler and simulator that is installed, and the IDE's builds for every board.
+	$(BIN)/stepgen matrix --simulator all --jobs $(JOBS) --libraries tests/libraries
 
 campaign: setup $(STAMPS)/fuzz  ## Run what takes hours: random campaigns, fuzzing, proofs, mutation tests.
 	$(BIN)/pytest -n $(JOBS) -m campaign

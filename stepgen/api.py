@@ -7,7 +7,7 @@ every target may be replaced. What the user can mend is raised as a `StepgenErro
 printed. docs/python.md shows each.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,6 +37,8 @@ from stepgen.spec import LoadedSpec, load_spec
 if TYPE_CHECKING:
     from stepgen.lint import LintReport, Rule
     from stepgen.verify.doctor import Diagnosis
+    from stepgen.verify.ide_matrix import Builds, Job
+    from stepgen.verify.ide_matrix import Outcome as BuildOutcome
     from stepgen.verify.report import SpecReport
     from stepgen.verify.runner import Outcome
 
@@ -338,6 +340,84 @@ def verify(
 
     chosen = compiler_named(compiler) if compiler else default_compiler()
     return verify_spec(load_spec(path), chosen, simulator=simulator_named(simulator), track=track)
+
+
+def remembered(
+    path: Path, *, compiler: str, simulator: str = "simavr", may_refuse: bool = False
+) -> "SpecReport | str":
+    """
+    Return what `verify` finds, from the cache if all was verified before as it is now.
+
+    What failed is not kept. With *may_refuse* a simulator that cannot be used for the spec is no
+    error: the reason is returned.
+
+    Raises:
+        StepgenError: As of `verify`.
+    """
+    from stepgen.verify.remembered import remembered_report  # noqa: PLC0415 - as in verify
+    from stepgen.verify.simulators import simulator_named  # noqa: PLC0415 - the same
+    from stepgen.verify.toolchain import compiler_named  # noqa: PLC0415 - the same
+
+    tools = (compiler_named(compiler), simulator_named(simulator))
+    return remembered_report(load_spec(path), *tools, may_refuse=may_refuse)
+
+
+def compilers() -> tuple[str, ...]:
+    """
+    Return the names of the compilers that are here, that of the PATH first.
+    """
+    from stepgen.verify.toolchain import find_compilers  # noqa: PLC0415 - as in verify
+
+    return tuple(compiler.name for compiler in find_compilers())
+
+
+def plan_builds(
+    libraries: Sequence[Generated], *, compilers: Sequence[str] = (), boards: Sequence[str] = ()
+) -> "Builds":
+    """
+    Return what the IDE has to build of *libraries*: each example for each board that it fits.
+
+    Args:
+        libraries: What `generate_all` returns.
+        compilers: Names; none for all that are here.
+        boards: Boards of the Arduino core, such as ``uno`` or ``nano:atmega328``; none for all.
+
+    Raises:
+        StepgenError: There is no Arduino core, or no such compiler or board.
+    """
+    from stepgen.verify.ide_matrix import plan_builds as plan_them  # noqa: PLC0415 - as in verify
+    from stepgen.verify.toolchain import compiler_named, find_compilers  # noqa: PLC0415 - same
+
+    chosen = [compiler_named(name) for name in compilers] or find_compilers()
+    return plan_them(
+        ((one.plan, one.loaded.document.path, one.files) for one in libraries), chosen, boards
+    )
+
+
+def build(
+    builds: "Builds", *, libraries: Sequence[Path] = (), jobs: int = 1
+) -> "Iterator[tuple[Job, BuildOutcome]]":
+    """
+    Have the Arduino IDE's engine build *builds*, *jobs* at once; yield each as it is done.
+
+    *libraries* are folders of further libraries, such as a sketchbook's, for examples that need
+    them.
+
+    Raises:
+        StepgenError: arduino-builder or the Arduino core is missing.
+    """
+    from stepgen.verify.ide_matrix import run_jobs  # noqa: PLC0415 - as in verify
+
+    return run_jobs(builds.jobs, libraries, at_once=jobs)
+
+
+def core_warnings(builds: "Builds") -> dict[str, tuple[str, ...]]:
+    """
+    Return compiler -> its warnings about the Arduino core, for the boards of *builds*.
+    """
+    from stepgen.verify.ide_matrix import core_warnings as warn  # noqa: PLC0415 - as in verify
+
+    return warn(builds)
 
 
 def datasheet(path: Path, *, report: "SpecReport | None" = None) -> str:

@@ -1,132 +1,122 @@
 """
-``stepgen matrix``: every spec with every compiler, side by side.
+``stepgen matrix``: every spec with every compiler, on simulators and built by the Arduino IDE.
 """
 
+import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from stepgen import api
-from stepgen.commands.report import FAILED, complain, print_tables, progress
+from stepgen.commands import matrix_builds, matrix_reports
+from stepgen.commands.report import FAILED, complain, print_tables, say
 from stepgen.errors import StepgenError
-
-if TYPE_CHECKING:
-    from stepgen.verify.report import SpecReport
+from stepgen.library.swap import os_errors
 
 EXAMPLE = "Example: stepgen matrix --jobs 2"
 
 _DEFAULT_FOLDER = Path("specs")
-_ALL = "all"
-_FIGURES = ("spec", "compiler", "flash", "RAM", "a step", "longest")
 
 
-def matrix(
+def matrix(  # noqa: PLR0913 - the options of a command
     specs: Annotated[
         list[Path] | None,
         typer.Argument(metavar="[SPEC]...", help="YAML files; without any, specs/*.yaml."),
     ] = None,
     *,
-    jobs: Annotated[
-        int, typer.Option("--jobs", "-j", min=1, metavar="N", help="How many at once.")
-    ] = os.cpu_count() or 1,
+    verify: Annotated[
+        bool, typer.Option("--verify/--no-verify", help="Compare with the model on simulators.")
+    ] = True,
+    builds: Annotated[
+        bool, typer.Option("--builds/--no-builds", help="Build with the Arduino IDE's engine.")
+    ] = True,
     simulator: Annotated[
         str,
         typer.Option(
             "--simulator", metavar="NAME", help="simavr, avr8js, yasimavr, or all that are here."
         ),
     ] = "simavr",
+    compilers: Annotated[
+        list[str] | None,
+        typer.Option("--compiler", metavar="NAME", help="gcc-5.4 or gcc-7.3; default: all here."),
+    ] = None,
+    boards: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--board",
+            metavar="NAME",
+            help="Build for this board of the Arduino core only, such as uno or nano:atmega328.",
+        ),
+    ] = None,
+    libraries: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--libraries",
+            metavar="DIR",
+            exists=True,
+            file_okay=False,
+            help="Other libraries that examples need, such as ~/Arduino/libraries with Servo.",
+        ),
+    ] = None,
+    jobs: Annotated[
+        int, typer.Option("--jobs", "-j", min=1, metavar="N", help="How many at once.")
+    ] = os.cpu_count() or 1,
+    junit: Annotated[
+        Path | None,
+        typer.Option("--junit", metavar="FILE", help="Write a JUnit report, too."),
+    ] = None,
+    github: Annotated[
+        bool,
+        typer.Option(
+            "--github", help="Print the matrix of a GitHub workflow for the builds, build nothing."
+        ),
+    ] = False,
 ) -> None:
     """
-    Compile and verify every spec with every compiler that is installed, and show it in tables.
+    Verify every spec with every compiler, and build every example for every board it fits.
 
-    A column for each simulator says whether all edges are where the model has them, to the cycle
-    or to the cycles in its heading; - that it cannot be used for the spec, with the reason below
-    the tables. Then flash and RAM in bytes over an empty sketch, cycles a step takes, and the
-    longest interrupt.
+    The first table is of verification: whether all edges are where the model has them, to the
+    cycle or to the cycles in a simulator's heading; - that it cannot be used for the spec. Flash
+    and RAM in bytes over an empty sketch; cycles a step takes, and the longest interrupt.
 
-    Exit code 1 if any of them fails.
+    The second is of arduino-builder, the engine of the Arduino IDE 1.8: each example on each board
+    of the Arduino core with the spec's chip and clock. Flash and RAM are those of the largest
+    example. A warning about the library or an example counts as a failure. An example whose
+    library is in no folder of --libraries is left out.
+
+    What passed is kept in the cache and not done again while nothing changes.
+
+    Exit code 1 if anything fails.
     """
     paths = specs or sorted(_DEFAULT_FOLDER.glob("*.yaml"))
     if not paths:
         raise StepgenError.of("no spec in specs/; name the specs", place=str(_DEFAULT_FOLDER))
-    chosen = None if simulator == _ALL else [simulator]
-    with progress("verifying") as track:
-        results = api.matrix(paths, simulators=chosen, jobs=jobs, track=track)
-    pairs = list(dict.fromkeys((path, compiler) for path, compiler, _ in results))
-    simulators = list(dict.fromkeys(name for _, _, name in results))
-    verdicts = ("spec", "compiler", *map(_title, simulators))
-    print_tables(
-        [
-            ("", verdicts, [_verdict_row(*pair, simulators, results) for pair in pairs]),
-            ("", _FIGURES, [_figure_row(*pair, simulators, results) for pair in pairs]),
-        ]
-    )
-    _say_what_is_left_out(results)
-    failed = [one for one in results.values() if not isinstance(one, str) and not one.passed]
-    for report in failed:
-        _say_failures(report)
-    if failed:
+    if not (verify or builds):
+        raise StepgenError.of("--no-verify and --no-builds leave nothing to do; remove one")
+    made = api.generate_all(paths)
+    plan = None
+    if builds or github:
+        plan = api.plan_builds(made, compilers=compilers or (), boards=boards or ())
+    if plan and github:
+        say(json.dumps(plan.github()))
+        return
+    sections = []
+    if verify:
+        names = compilers or list(api.compilers())
+        sections.append(matrix_reports.section(paths, names, simulator, jobs))
+    if plan:
+        sections.append(matrix_builds.section(plan, libraries or (), jobs))
+    print_tables([table for section in sections for table in section.tables])
+    for section in sections:
+        for note in section.notes:
+            complain(note)
+    if junit:
+        from stepgen.verify.junit import junit_xml  # noqa: PLC0415 - only needed here
+
+        with os_errors(junit):
+            text = junit_xml((section.title, section.cases) for section in sections)
+            junit.write_text(text, encoding="utf-8")
+    if any(case.failure for section in sections for case in section.cases):
         raise typer.Exit(FAILED)
-
-
-def _title(simulator: str) -> str:
-    tolerance_cycles = api.tolerances().get(simulator, 0)
-    return f"{simulator} +-{tolerance_cycles}" if tolerance_cycles else simulator
-
-
-def _verdict_row(
-    path: Path, compiler: str, simulators: list[str], results: dict[api.Job, "SpecReport | str"]
-) -> tuple[str, ...]:
-    """
-    Return the row of one spec and compiler, with the verdict of each simulator.
-    """
-    verdicts = (_verdict(results[path, compiler, name]) for name in simulators)
-    return (path.stem, compiler, *verdicts)
-
-
-def _figure_row(
-    path: Path, compiler: str, simulators: list[str], results: dict[api.Job, "SpecReport | str"]
-) -> tuple[str, ...]:
-    """
-    Return the row of one spec and compiler; the figures are those of the first simulator.
-    """
-    of_each = [results[path, compiler, name] for name in simulators]
-    report = next((one for one in of_each if not isinstance(one, str)), None)
-    if report is None:
-        raise StepgenError.of("no simulator can be used for this spec", place=str(path))
-    motors = report.motors.values()
-    return (
-        path.stem,
-        compiler,
-        str(report.flash_bytes),
-        str(report.ram_bytes),
-        f"{max(motor.cycles_per_step for motor in motors):g}",
-        str(max(motor.measured_max for motor in motors)),
-    )
-
-
-def _verdict(result: "SpecReport | str") -> str:
-    if isinstance(result, str):
-        return "-"
-    return "passed" if result.passed else "FAILED"
-
-
-def _say_what_is_left_out(results: dict[api.Job, "SpecReport | str"]) -> None:
-    """
-    Say each reason for which a simulator was not used, once, and for which specs.
-    """
-    specs: dict[str, list[str]] = {}
-    for (path, _, _), result in results.items():
-        if isinstance(result, str) and path.stem not in specs.setdefault(result, []):
-            specs[result].append(path.stem)
-    for reason, stems in specs.items():
-        complain(f"left out: {reason}: {', '.join(stems)}")
-
-
-def _say_failures(report: "SpecReport") -> None:
-    tools = f"{report.compiler}, {report.simulator}"
-    for check in report.checks:
-        if not check.passed:
-            complain(f"{report.spec} ({tools}): {check.name}: {check.detail}")

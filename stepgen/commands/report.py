@@ -119,25 +119,46 @@ def print_tables(parts: Sequence[tuple[str, Sequence[str], Iterable[Sequence[str
     """
     Print tables of title, heading and rows; 80 columns wide where the output is no terminal.
 
-    A title may be "" and a heading ().
+    A title may be "" and a heading (). A row of one cell is a heading of the rows below it, and
+    takes the whole width.
     """
-    from rich import box  # noqa: PLC0415 - rich takes as long to import as a spec to generate
-    from rich.console import Console  # noqa: PLC0415 - the same
-    from rich.table import Table  # noqa: PLC0415 - the same
+    from rich.console import Console  # noqa: PLC0415 - rich takes as long to import as a spec
 
     console = Console(markup=False, highlight=False, emoji=False)
     for index, (title, heading, rows) in enumerate(parts):
-        table = Table(*heading, box=box.SIMPLE, show_header=bool(heading))
-        table.show_edge = table.pad_edge = False
-        for column in table.columns[:1]:
-            column.no_wrap = True  # it names the row, and must be readable as a whole
-        for row in rows:
-            table.add_row(*row)
+        cells = [tuple(row) for row in rows]
         if index:
             console.print()
         if title:
             console.print(title, style="bold")
+        table = _table(heading, cells, shows_heading=bool(heading))
+        for row in cells:
+            if len(row) > 1:
+                table.add_row(*row)
+                continue
+            if table.rows or table.show_header:
+                console.print(table)
+            console.print(*row)
+            table = _table(heading, cells, shows_heading=False)
         console.print(table)
+
+
+def _table(heading: Sequence[str], cells: Sequence[Sequence[str]], *, shows_heading: bool) -> Any:  # noqa: ANN401 - rich is slow to import
+    """
+    Return a table without rows; where one of *cells* is a heading, all such tables are as wide.
+    """
+    from rich import box  # noqa: PLC0415 - rich takes as long to import as a spec to generate
+    from rich.table import Table  # noqa: PLC0415 - the same
+
+    table = Table(*heading, box=box.SIMPLE, show_header=shows_heading)
+    table.show_edge = table.pad_edge = False
+    for column in table.columns[:1]:
+        column.no_wrap = True  # it names the row, and must be readable as a whole
+    if any(len(row) == 1 for row in cells):
+        whole = (heading, *(row for row in cells if len(row) > 1))
+        for column, texts in zip(table.columns, zip(*whole, strict=True), strict=True):
+            column.width, column.no_wrap = max(map(len, texts)), True
+    return table
 
 
 def track(paths: Sequence[Path]) -> Iterable[Path]:

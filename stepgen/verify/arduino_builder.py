@@ -2,8 +2,9 @@
 Runs the Arduino IDE's own build engine, arduino-builder, without the IDE.
 """
 
+import functools
 import re
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,13 +28,22 @@ class IdeBuild(Build):
     Args:
         warnings: The compiler's about files in the libraries folder, and the IDE's own
             about libraries ("WARNING: Category ... is not valid").
+        others: The compiler's about other files, such as the core's where it was compiled.
     """
 
     warnings: tuple[str, ...]
+    others: tuple[str, ...]
 
 
-def build_with_ide(
-    sketch_dir: Path, libraries_dir: Path, fqbn: str, compiler: Compiler, build_path: Path
+def build_with_ide(  # noqa: PLR0913 - the options of the IDE that matter here
+    sketch_dir: Path,
+    libraries_dir: Path,
+    fqbn: str,
+    compiler: Compiler,
+    build_path: Path,
+    *,
+    others: Sequence[Path] = (),
+    core_cache: Path | None = None,
 ) -> IdeBuild:
     """
     Return what the Arduino IDE makes of the sketch ``sketch_dir/<its name>.ino``.
@@ -44,6 +54,8 @@ def build_with_ide(
         fqbn: The board, "arduino:avr:uno" or "arduino:avr:mega:cpu=atmega2560".
         compiler: One of find_compilers().
         build_path: Where the program goes; made if needed.
+        others: Further folders of libraries.
+        core_cache: Where the compiled core is looked for, and kept.
 
     Raises:
         StepgenError: A tool is missing, the board is unknown, or the IDE refuses the sketch
@@ -54,10 +66,23 @@ def build_with_ide(
     libraries, out = libraries_dir.resolve(), build_path.resolve()
     out.mkdir(parents=True, exist_ok=True)
     arguments = ["-fqbn", fqbn, "-libraries", str(libraries), "-build-path", str(out)]
+    arguments += [word for folder in others for word in ("-libraries", str(folder.resolve()))]
+    arguments += ["-build-cache", str(core_cache)] if core_cache else []
     output = run([*_builder_command(compiler), *arguments, str(sketch)], place=str(sketch))
     elf = out / f"{sketch.name}.elf"
     flash_bytes, ram_bytes = _reported(_FLASH, output), _reported(_RAM, output)
-    return IdeBuild(elf, flash_bytes, ram_bytes, tuple(_warnings(output, libraries)))
+    return IdeBuild(elf, flash_bytes, ram_bytes, *_warnings(output, libraries))
+
+
+@functools.cache
+def builder_version() -> str:
+    """
+    Return what arduino-builder says about its version.
+
+    Raises:
+        StepgenError: It is not installed.
+    """
+    return run([str(require_tool("arduino-builder")), "-version"])
 
 
 def _builder_command(compiler: Compiler) -> list[str]:
@@ -81,8 +106,13 @@ def _reported(pattern: re.Pattern[str], output: str) -> int:
     return int(match[1])
 
 
-def _warnings(output: str, libraries: Path) -> Iterator[str]:
-    for line in output.splitlines():
-        ours = line.startswith(f"{libraries}/") and "warning: " in line
-        if ours or line.startswith("WARNING: "):
-            yield line
+def _warnings(output: str, libraries: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """
+    Return the warnings about what is in *libraries*, and those about the rest.
+    """
+    found = [line for line in output.splitlines() if re.search(r"\bwarning: |^WARNING: ", line)]
+    own = (f"{libraries}/", "WARNING: ")
+    return (
+        tuple(line for line in found if line.startswith(own)),
+        tuple(line for line in found if not line.startswith(own)),
+    )

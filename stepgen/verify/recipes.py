@@ -62,6 +62,23 @@ class Target:
         """
         return f"arduino:avr:{self.board_id}" + (f":cpu={self.cpu}" if self.cpu else "")
 
+    @property
+    def title(self) -> str:
+        """
+        Return the same in short, "mega:atmega2560".
+        """
+        return f"{self.board_id}:{self.cpu}" if self.cpu else self.board_id
+
+
+def targets() -> tuple[Target, ...]:
+    """
+    Return every choice of the Board and Processor menus, in the order of boards.txt.
+
+    Raises:
+        StepgenError: The core is not installed.
+    """
+    return _targets(platform_dir())
+
 
 def platform_dir() -> Path:
     """
@@ -109,6 +126,14 @@ def command(
         elif filled := _PLACEHOLDER.sub(lambda match: str(words.get(match[1], "")), argument):
             arguments.append(filled)
     return arguments
+
+
+@functools.cache
+def _targets(platform: Path) -> tuple[Target, ...]:
+    boards = _read_properties(platform / "boards.txt")
+    names = [key.removesuffix(".name") for key in boards if re.fullmatch(r"\w+\.name", key)]
+    cpus = {name: [key for key in _under(boards, f"{name}.menu.cpu.") if "." not in key] for name in names}
+    return tuple(Target(name, cpu) for name in names for cpu in cpus[name] or [""])
 
 
 @functools.cache

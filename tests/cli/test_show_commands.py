@@ -56,7 +56,9 @@ def test_a_board_fits_a_pipe(stepgen: Stepgen, name: str) -> None:
     assert "\x1b" not in run.out
     for pin in board.pins:
         assert re.search(
-            rf"^{pin.label} +{pin.bit.name} +{', '.join(pin.uses)}", run.out, re.MULTILINE
+            rf"^{pin.label} +{pin.bit.name} +{', '.join((*pin.also, *pin.uses))}",
+            run.out,
+            re.MULTILINE,
         )
     for label in board.analog_inputs:
         assert re.search(rf"^{label} +- +analog input only", run.out, re.MULTILINE)

@@ -13,7 +13,7 @@ from stepgen.verify.cache import build_once, content_key
 from stepgen.verify.recipes import platform_dir
 from stepgen.verify.toolchain import Compiler, Target, build
 
-STUBS = Path(__file__).with_name("stubs")
+STUBS = Path(__file__).parents[1] / "libraries/Servo/src"
 
 
 def example_names(plan: Plan) -> list[str]:
