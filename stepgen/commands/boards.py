@@ -73,9 +73,7 @@ def _board_row(board: Board) -> Row:
 
 
 def _pin_rows(board: Board) -> Iterable[Row]:
-    yield from (
-        (pin.label, pin.bit.name, ", ".join((*pin.also, *pin.uses))) for pin in board.pins
-    )
+    yield from ((pin.label, pin.bit.name, ", ".join((*pin.also, *pin.uses))) for pin in board.pins)
     yield from ((label, "-", "analog input only") for label in board.analog_inputs)
 
 

@@ -4,6 +4,7 @@
 
 import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +12,7 @@ import typer
 
 from stepgen import api
 from stepgen.commands import matrix_builds, matrix_reports
+from stepgen.commands.matrix_section import Section
 from stepgen.commands.report import FAILED, complain, print_tables, say
 from stepgen.errors import StepgenError
 from stepgen.library.swap import os_errors
@@ -96,27 +98,34 @@ def matrix(  # noqa: PLR0913 - the options of a command
     if not (verify or builds):
         raise StepgenError.of("--no-verify and --no-builds leave nothing to do; remove one")
     made = api.generate_all(paths)
-    plan = None
-    if builds or github:
-        plan = api.plan_builds(made, compilers=compilers or (), boards=boards or ())
-    if plan and github:
+    # Before anything runs: it refuses boards and compilers that are not there.
+    plan = api.plan_builds(made, compilers=compilers or (), boards=boards or ())
+    if github:
         say(json.dumps(plan.github()))
         return
     sections = []
     if verify:
-        names = compilers or list(api.compilers())
+        names = compilers or api.compilers()
         sections.append(matrix_reports.section(paths, names, simulator, jobs))
-    if plan:
+    if builds:
         sections.append(matrix_builds.section(plan, libraries or (), jobs))
+    _show(sections)
+    if junit:
+        _write_junit(sections, junit)
+    if any(case.failure for section in sections for case in section.cases):
+        raise typer.Exit(FAILED)
+
+
+def _show(sections: Sequence[Section]) -> None:
     print_tables([table for section in sections for table in section.tables])
     for section in sections:
         for note in section.notes:
             complain(note)
-    if junit:
-        from stepgen.verify.junit import junit_xml  # noqa: PLC0415 - only needed here
 
-        with os_errors(junit):
-            text = junit_xml((section.title, section.cases) for section in sections)
-            junit.write_text(text, encoding="utf-8")
-    if any(case.failure for section in sections for case in section.cases):
-        raise typer.Exit(FAILED)
+
+def _write_junit(sections: Sequence[Section], path: Path) -> None:
+    from stepgen.verify.junit import junit_xml  # noqa: PLC0415 - generating needs none
+
+    text = junit_xml((section.title, section.cases) for section in sections)
+    with os_errors(path):
+        path.write_text(text, encoding="utf-8")

@@ -29,7 +29,13 @@ def section(plan: "Builds", libraries: Sequence[Path], jobs: int) -> Section:
     return Section(
         "builds",
         (_table(results),),
-        (*_of_core(plan), *_others(results), *_unfit(plan), *_left_out(results), *_failures(results)),
+        (
+            *_of_core(plan),
+            *_others(results),
+            *_unfit(plan),
+            *_left_out(results),
+            *_failures(results),
+        ),
         tuple(_cases(results)),
     )
 

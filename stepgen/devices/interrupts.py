@@ -16,7 +16,7 @@ _MILLIS_SPACING_CYCLES = 64 * 256  # timer 0: prescaler 64, 256 ticks
 # A frame at 115200 baud lasts 10 bits. The core makes a bit of 136 clocks at 16 MHz, of 72 at 8,
 # and a sender's stop bit may be cut short by up to half a bit: 9.5 bits are 80.75 and 85.5 us.
 _SERIAL_SPACING_US = 80
-# A frame of USB lasts 1 ms give or take 500 ns (USB 2.0, 7.1.12), and the chip's clock is a crystal.
+# A frame of USB lasts 1 ms, give or take 500 ns (USB 2.0, 7.1.12); the chip's clock is a crystal.
 _USB_FRAME_US = 999
 _SERVO_PULSE_US = 544  # MIN_PULSE_WIDTH
 _TONE_SPACING_US = 100  # 5 kHz: two interrupts a period

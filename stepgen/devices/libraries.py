@@ -68,6 +68,7 @@ _SERVO_OF_MEGAS = replace(_SERVO, timers=(5, 1, 3, 4))
 _TONE = SketchLibrary(timers=(2,), timer_event="COMPA")  # and any pin
 _USB = SketchLibrary(vectors="USB_(GEN|COM)_vect")  # the chip's own USB, which has no other pins
 
+
 def _on(library: SketchLibrary, *mcus: str) -> Mapping[str, SketchLibrary]:
     return MappingProxyType(dict.fromkeys(mcus, library))
 

@@ -132,7 +132,10 @@ def command(
 def _targets(platform: Path) -> tuple[Target, ...]:
     boards = _read_properties(platform / "boards.txt")
     names = [key.removesuffix(".name") for key in boards if re.fullmatch(r"\w+\.name", key)]
-    cpus = {name: [key for key in _under(boards, f"{name}.menu.cpu.") if "." not in key] for name in names}
+    cpus = {
+        name: [key for key in _under(boards, f"{name}.menu.cpu.") if "." not in key]
+        for name in names
+    }
     return tuple(Target(name, cpu) for name in names for cpu in cpus[name] or [""])
 
 

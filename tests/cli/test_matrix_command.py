@@ -5,7 +5,7 @@
 import json
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 import pytest
 from typer.testing import CliRunner, Result
@@ -46,7 +46,8 @@ def rows(output: str) -> dict[tuple[str, ...], list[str]]:
     """
     Return the columns of the simulators, by spec and compiler.
     """
-    found, spec = {}, ""
+    found: dict[tuple[str, ...], list[str]] = {}
+    spec = ""
     for line in output.splitlines():
         words = line.split()
         if line.startswith("  gcc-"):
@@ -117,6 +118,13 @@ def pretend(monkeypatch: pytest.MonkeyPatch) -> Callable[[Build], None]:
     return replace
 
 
+def junit_suite(report: Path) -> ET.Element:
+    """
+    Return the first suite of a JUnit report.
+    """
+    return ET.parse(report).getroot()[0]  # noqa: S314 - our own
+
+
 def built(job: Job) -> Outcome:
     """
     Return a build that passed: the more letters its example has the more flash it takes.
@@ -159,7 +167,7 @@ def test_a_warning_about_our_code_and_a_failure_fail(
     pretend(lambda job: wrong if job.target.board_id == "megaADK" else built(job))
     report = tmp_path / "junit.xml"
     result = matrix(MEGA, "--no-verify", "--compiler", "gcc-7.3", "--junit", report)
-    suite = ElementTree.parse(report).getroot()[0]
+    suite = junit_suite(report)
     failures = [case for case in suite if case.find("failure") is not None]
 
     assert result.exit_code == 1
@@ -176,9 +184,11 @@ def test_warnings_about_others_and_missing_libraries_fail_nothing(
     Both are said; an example without its library is skipped in the JUnit report.
     """
     pretend(
-        lambda job: Outcome(needs="Servo.h")
-        if job.example == "Turn"
-        else Outcome(9, 9, others=("Wire.cpp:1: warning: unused",))
+        lambda job: (
+            Outcome(needs="Servo.h")
+            if job.example == "Turn"
+            else Outcome(9, 9, others=("Wire.cpp:1: warning: unused",))
+        )
     )
     report = tmp_path / "junit.xml"
     result = matrix(MEGA, "--no-verify", "--junit", report)
@@ -186,7 +196,7 @@ def test_warnings_about_others_and_missing_libraries_fail_nothing(
     assert result.exit_code == 0
     assert result.stderr.count("not ours: Wire.cpp:1: warning: unused\n") == 1
     assert "no library has Servo.h: Turn of mega_timer2; install it" in result.stderr
-    assert ElementTree.parse(report).getroot()[0].get("skipped") == "4"
+    assert junit_suite(report).get("skipped") == "4"
 
 
 def test_a_workflow_gets_a_job_for_each_board_and_compiler() -> None:

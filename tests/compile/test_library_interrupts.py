@@ -134,7 +134,7 @@ def test_what_is_said_to_have_no_bound_has_none(
     vector = UNBOUND[library].vector
     worst = program(library, board_named("leonardo"), compiler, tmp_path)
 
-    with pytest.raises(StepgenError, match="cycles have no bound|cannot be followed"):
+    with pytest.raises(StepgenError, match="cycles have no bound"):
         worst.interrupt(vector)
 
 

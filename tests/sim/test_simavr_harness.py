@@ -495,7 +495,9 @@ def test_unknown_chip_is_refused(start: Start, tmp_path: Path) -> None:
     """
     start("stack").close()
 
-    with pytest.raises(StepgenError, match=r"attiny13.* atmega328p, atmega32u4, atmega1280 and atmega2560"):
+    with pytest.raises(
+        StepgenError, match=r"attiny13.* atmega328p, atmega32u4, atmega1280 and atmega2560"
+    ):
         Machine(tmp_path / "stack.elf", mcu="attiny13", f_cpu_hz=F_CPU_HZ)
 
 

@@ -62,8 +62,10 @@ def test_libraries_take_the_pins_meant_for_them(board: Board) -> None:
 
 # The timers of each chip in the order of ServoTimers.h of arduino-libraries/Servo.
 SERVO_TIMERS = {
-    **{"atmega328p": (1,), "atmega32u4": (1,)},
-    **{"atmega1280": (5, 1, 3, 4), "atmega2560": (5, 1, 3, 4)},
+    "atmega328p": (1,),
+    "atmega32u4": (1,),
+    "atmega1280": (5, 1, 3, 4),
+    "atmega2560": (5, 1, 3, 4),
 }
 
 

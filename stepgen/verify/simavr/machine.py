@@ -20,7 +20,7 @@ _VECTORS = 64
 
 class Machine(Loaded):
     """
-    An ATmega328P, ATmega32U4, ATmega1280 or ATmega2560 with a program in its flash, just out of reset.
+    An ATmega328P, 32U4, 1280 or 2560 with a program in its flash, just out of reset.
 
     Args:
         elf: The program, as avr-gcc links it.
