@@ -187,10 +187,10 @@ SHARED void carriageEnergise() {
 // from 1 on; then the same when it made the step itself; then both with a limit in
 // milliseconds.
 static const uint8_t carriageElapsed[] PROGMEM = {
-    193, 24, 3, 0, 0,
-    202, 25, 3, 0, 0,
-    233, 29, 3, 0, 0,
-    242, 30, 3, 0, 0,
+    196, 24, 3, 0, 0,
+    210, 26, 3, 0, 0,
+    236, 29, 3, 0, 0,
+    250, 31, 3, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
