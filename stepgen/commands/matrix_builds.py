@@ -130,9 +130,16 @@ def _others(results: "_Results") -> Iterator[str]:
 
 
 def _failures(results: "_Results") -> Iterator[str]:
+    """
+    Yield what is wrong, once, with the first build in which it is and how many more there are.
+    """
+    places: dict[str, list[str]] = {}
     for job, outcome in results.items():
         for line in (*outcome.warnings, *filter(None, [outcome.failure])):
-            yield f"{_place(job)}: {line}"
+            places.setdefault(line, []).append(_place(job))
+    for line, found in places.items():
+        more = f", and {len(found) - 1} builds more" if found[1:] else ""
+        yield f"{found[0]}{more}: {line}"
 
 
 def _place(job: "Job") -> str:

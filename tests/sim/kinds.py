@@ -19,4 +19,6 @@ KINDS = (
     "mega_ramps_z",
     "uno_cnc_shield",
     "uno_drv8825",
+    "leonardo_motor_shield",
+    "micro_slider",
 )

@@ -4,7 +4,7 @@ Judging a library by its worst case: what was measured, what was planned, what t
 
 from collections.abc import Iterator
 
-from stepgen.devices import CORE, LibraryInterrupt
+from stepgen.devices import CORE
 from stepgen.errors import StepgenError
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.spec import LoadedSpec
@@ -34,11 +34,11 @@ def judge_worst_case(
         }
         masked = longest([program.masked(f"{plan.library.name}.cpp") for program in programs])
         vectors = {vector.name for vector in mcu.vectors}
-        core = [
-            (one, longest([program.interrupt(one.vector) for program in programs]))
-            for one in CORE.values()
+        core = {
+            name: longest([program.interrupt(one.vector) for program in programs])
+            for name, one in CORE.items()
             if one.vector in vectors
-        ]
+        }
     except StepgenError as error:
         report.check(_NAME, tuple(fault.reason for fault in error.faults), "")
         return
@@ -46,8 +46,8 @@ def judge_worst_case(
     for motor in plan.motors:
         findings += _judge_motor(motor, steps[motor.name], loaded, report)
     findings += _over("a call can have interrupts off for", masked, plan.masked_bound_cycles)
-    for one, bound in core:
-        findings += _over(f"{one.cause} can take", bound, one.cycles)
+    for name, bound in core.items():
+        findings += _over(f"{CORE[name].cause} can take", bound, CORE[name].cycles)
     if report.masked_cycles > masked.cycles:
         findings.append(f"interrupts were off for {report.masked_cycles} of {masked.cycles} cycles")
     report.stack_bound_bytes = max(bound.stack_bytes for bound in steps.values())
@@ -83,13 +83,15 @@ def _summary(
     plan: Plan,
     steps: dict[str, Bound],
     masked: Bound,
-    core: list[tuple[LibraryInterrupt, Bound]],
+    core: dict[str, Bound],
 ) -> str:
     motors = ", ".join(
         f"{motor.name} {steps[motor.name].cycles} of {motor.isr_bound_cycles}"
         for motor in plan.motors
     )
-    others = ", ".join(f"{one.cause} {bound.cycles} of {one.cycles}" for one, bound in core)
+    others = ", ".join(
+        f"{name} interrupt {bound.cycles} of {CORE[name].cycles}" for name, bound in core.items()
+    )
     return (
         f"by the plan's cycles at most: step interrupt {motors}, interrupts off in a call "
         f"{masked.cycles} of {plan.masked_bound_cycles}, {others}"
