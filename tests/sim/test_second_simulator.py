@@ -20,7 +20,7 @@ from stepgen.verify.verification import verify_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
 EVERY_SPEC = sorted(path.stem for path in SPECS.glob("*.yaml"))
-ATMEGA328P = [name for name in EVERY_SPEC if not name.startswith("mega")]
+ATMEGA328P = [name for name in EVERY_SPEC if not name.startswith(("mega", "leonardo", "micro"))]
 # Speeds that change across prescalers, by calls and by update events; scenarios of theirs.
 BY_EVENTS = "motor: events each few milliseconds, by the interrupt, across prescalers"
 ACROSS_PRESCALERS = {

@@ -208,6 +208,18 @@ def test_a_pin_is_found_by_all_its_names(text: str, label: str, uno: Board) -> N
     assert found.label == label
 
 
+def test_a_pin_with_two_labels_is_found_by_both() -> None:
+    """
+    The Leonardo's D4 is its analog input A6; A0 is a pin of its own.
+    """
+    leonardo = find_board("leonardo")
+    assert leonardo is not None
+
+    assert leonardo.find_pin("a6") is leonardo.find_pin("D4") is leonardo.find_pin("PD4")
+    assert leonardo.find_pin("A0") is leonardo.find_pin("PF7")
+    assert leonardo.find_pin("A12") is None
+
+
 def test_no_two_boards_are_the_same() -> None:
     """
     Names, titles and FQBNs are each board's own.

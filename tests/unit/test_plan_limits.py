@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from stepgen.devices import INTERRUPTS, MILLIS
+from stepgen.devices import CORE, INTERRUPTS, MILLIS
 from stepgen.plan.model import Plan
 from stepgen.plan.warnings import plan_warnings
 
@@ -35,6 +35,20 @@ def test_one_motor_of_constant_speed_is_limited_by_its_timing(planned: Planner) 
     ]
     assert "640 clocks are the shortest period of timing fast-pwm" in plan.rates["motor"][-1].cause
     assert plan.minimum_period_cycles == FAST_PWM_FLOOR
+
+
+def test_on_a_chip_with_usb_a_step_waits_for_its_frames(planned: Planner) -> None:
+    """
+    The core has USB on beside every sketch, so that it counts like millis.
+    """
+    plan = one(planned, "drive: motor-shield, timer: 3", "Serial1", "leonardo")
+    alone, core, everything = plan.rates["motor"]
+    parts = {part.cause: part.cycles for part in core.parts}
+
+    assert (alone.beside, core.beside) == ("alone", "beside millis and USB")
+    assert everything.beside == "beside millis, USB and Serial1"
+    assert parts["the USB interrupt of a frame"] == CORE["USB"].cycles
+    assert alone.period_cycles < core.period_cycles < everything.period_cycles
 
 
 def test_its_parts_are_what_a_step_waits_for(planned: Planner) -> None:

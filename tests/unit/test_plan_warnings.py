@@ -2,6 +2,7 @@
 Warnings: what a plan keeps from libraries that the spec does not name.
 """
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -158,3 +159,20 @@ def test_every_motor_is_named(warned: Warned) -> None:
     motors = [line.split(":")[0] for line in found]
     assert motors == sorted(motors, reverse=True)
     assert set(motors) == {"motor tilt", "motor pan"}
+
+
+def test_usb_of_the_core_can_hold_a_motor_up(warned: Warned) -> None:
+    """
+    Of a chip with USB it is always said, and of Serial there if the spec uses it.
+    """
+    pins = "A0, A1, A2, A3"
+    alone = [text for text in warned(_spec("leonardo", pins, 3)) if "nothing bounds" in text]
+    beside = warned(_spec("leonardo", pins, 3, "Serial, Serial1"))
+    held = [text.split(",")[0] for text in beside if "nothing bounds" in text]
+
+    assert [text.split(",")[0] for text in alone] == ["motor pan: nothing bounds USB"]
+    # A step waits for all of a frame of 1 ms and the interrupt around it: less than 1000 a second.
+    (rate,) = re.findall(r"up to (\d+) steps/s are safe beside it", alone[0])
+    assert 800 < int(rate) < 1000
+    assert held == ["motor pan: nothing bounds USB", "motor pan: nothing bounds Serial"]
+    assert not any("nothing bounds" in text for text in warned(_spec("uno", pins, 1, "Serial")))
