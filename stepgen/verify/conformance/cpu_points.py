@@ -204,8 +204,7 @@ def port_write_cycles(lab: Lab) -> Iterator[str]:
             yield f"{seen} cycles between port writes, on the chip [2, 2, 5, 2]"
 
 
-@point("uart", "USART0 receives bytes and sends bytes, by interrupts", "19.6, 19.7")
-def uart(lab: Lab) -> Iterator[str]:
+def _uart(lab: Lab) -> Iterator[str]:
     """
     Let it send each byte plus one.
     """
@@ -215,6 +214,12 @@ def uart(lab: Lab) -> Iterator[str]:
         sent = bytes(of_kind(machine, Kind.UART)["value"].astype("u1"))
         if sent != b"IBM":
             yield f"sent {sent!r} upon b'HAL', on the chip b'IBM'"
+
+
+uart = point("uart", "USART0 receives bytes and sends bytes, by interrupts", "19.6, 19.7")(_uart)
+uart_32u4 = point(
+    "uart-32u4", "USART1 of the ATmega32U4 receives and sends bytes", "Atmel-7766: 18.6", USB_CHIP
+)(_uart)
 
 
 @point("uart-buffer", "USART0 takes a second byte while it sends the first", "19.6.1")

@@ -28,7 +28,10 @@ ALWAYS = (
 )
 OF_CHIP: Mapping[str, Sequence[str]] = {
     UNO_CHIP: ("instruction-cycles", "response"),
-    USB_CHIP: ("instruction-cycles-32u4", "response-32u4", "two-timers-32u4", "usb-frames"),
+    USB_CHIP: (
+        *("instruction-cycles-32u4", "response-32u4", "two-timers-32u4"),
+        *("usb-frames", "uart-32u4"),
+    ),
     MEGA_1280_CHIP: ("instruction-cycles-1280", "response-1280", "four-timers-1280"),
     MEGA_CHIP: ("instruction-cycles-2560", "response-2560", "four-timers"),
 }
