@@ -37,7 +37,7 @@ from stepgen.spec import LoadedSpec, load_spec
 if TYPE_CHECKING:
     from stepgen.lint import LintReport, Rule
     from stepgen.verify.doctor import Diagnosis
-    from stepgen.verify.ide_matrix import Builds, Job
+    from stepgen.verify.ide_matrix import Build, Builds
     from stepgen.verify.ide_matrix import Outcome as BuildOutcome
     from stepgen.verify.report import SpecReport
     from stepgen.verify.runner import Outcome
@@ -55,7 +55,9 @@ __all__ = [
     "WriteResult",
     "board",
     "boards",
+    "build",
     "check",
+    "core_warnings",
     "datasheet",
     "doctor",
     "generate",
@@ -66,6 +68,7 @@ __all__ = [
     "load",
     "matrix",
     "plan",
+    "plan_builds",
     "render",
     "render_all",
     "schema",
@@ -342,43 +345,14 @@ def verify(
     return verify_spec(load_spec(path), chosen, simulator=simulator_named(simulator), track=track)
 
 
-def remembered(
-    path: Path, *, compiler: str, simulator: str = "simavr", may_refuse: bool = False
-) -> "SpecReport | str":
-    """
-    Return what `verify` finds, from the cache if all was verified before as it is now.
-
-    What failed is not kept. With *may_refuse* a simulator that cannot be used for the spec is no
-    error: the reason is returned.
-
-    Raises:
-        StepgenError: As of `verify`.
-    """
-    from stepgen.verify.remembered import remembered_report  # noqa: PLC0415 - as in verify
-    from stepgen.verify.simulators import simulator_named  # noqa: PLC0415 - the same
-    from stepgen.verify.toolchain import compiler_named  # noqa: PLC0415 - the same
-
-    tools = (compiler_named(compiler), simulator_named(simulator))
-    return remembered_report(load_spec(path), *tools, may_refuse=may_refuse)
-
-
-def compilers() -> tuple[str, ...]:
-    """
-    Return the names of the compilers that are here, that of the PATH first.
-    """
-    from stepgen.verify.toolchain import find_compilers  # noqa: PLC0415 - as in verify
-
-    return tuple(compiler.name for compiler in find_compilers())
-
-
 def plan_builds(
-    libraries: Sequence[Generated], *, compilers: Sequence[str] = (), boards: Sequence[str] = ()
+    libraries: Sequence[Rendered], *, compilers: Sequence[str] = (), boards: Sequence[str] = ()
 ) -> "Builds":
     """
     Return what the IDE has to build of *libraries*: each example for each board that it fits.
 
     Args:
-        libraries: What `generate_all` returns.
+        libraries: What `render_all` returns.
         compilers: Names; none for all that are here.
         boards: Boards of the Arduino core, such as ``uno`` or ``nano:atmega328``; none for all.
 
@@ -396,7 +370,7 @@ def plan_builds(
 
 def build(
     builds: "Builds", *, libraries: Sequence[Path] = (), jobs: int = 1
-) -> "Iterator[tuple[Job, BuildOutcome]]":
+) -> "Iterator[tuple[Build, BuildOutcome]]":
     """
     Have the Arduino IDE's engine build *builds*, *jobs* at once; yield each as it is done.
 
@@ -468,15 +442,19 @@ def usable_simulators(path: Path, *, compiler: str | None = None) -> dict[str, s
 def matrix(
     paths: Sequence[Path],
     *,
+    compilers: Sequence[str] = (),
     simulators: Sequence[str] | None = None,
     jobs: int = 1,
     track: Callable[[Any], Iterable[Any]] = iter,
 ) -> "dict[Job, SpecReport | str]":
     """
-    Verify each spec in *paths* with every compiler that is here, on each simulator.
+    Verify each spec in *paths* with each compiler, on each simulator.
+
+    What passed before is taken from the cache while nothing changes that it depends on.
 
     Args:
         paths: The specs.
+        compilers: Their names; without them all that are here.
         simulators: Their names; without them all that are here, as far as each fits the spec.
         jobs: How many verifications run at once, each in a process of its own.
         track: Shows progress; passes on what has a length, in the order of its end.
@@ -492,12 +470,8 @@ def matrix(
     from stepgen.verify.toolchain import find_compilers  # noqa: PLC0415 - the same
 
     names = [*tolerances()] if simulators is None else simulators
-    wanted = [
-        (path, compiler.name, name)
-        for path in paths
-        for compiler in find_compilers()
-        for name in names
-    ]
+    chosen = compilers or [compiler.name for compiler in find_compilers()]
+    wanted = [(path, compiler, name) for path in paths for compiler in chosen for name in names]
     work = _verify_where_possible if simulators is None else _verify
     return in_processes(work, wanted, jobs, track)
 
@@ -533,15 +507,25 @@ def simulate(
 
 
 def _verify(path: Path, compiler: str, simulator: str) -> "SpecReport | str":
-    return verify(path, compiler=compiler, simulator=simulator)
+    return _remembered(path, compiler, simulator, may_refuse=False)
 
 
 def _verify_where_possible(path: Path, compiler: str, simulator: str) -> "SpecReport | str":
     """
     Return the report, or why *simulator* cannot be used for the spec in *path*.
     """
-    reason = usable_simulators(path, compiler=compiler)[simulator]
-    return reason or _verify(path, compiler, simulator)
+    return _remembered(path, compiler, simulator, may_refuse=True)
+
+
+def _remembered(
+    path: Path, compiler: str, simulator: str, *, may_refuse: bool
+) -> "SpecReport | str":
+    from stepgen.verify.remembered import remembered_report  # noqa: PLC0415 - as in verify
+    from stepgen.verify.simulators import simulator_named  # noqa: PLC0415 - the same
+    from stepgen.verify.toolchain import compiler_named  # noqa: PLC0415 - the same
+
+    tools = (compiler_named(compiler), simulator_named(simulator))
+    return remembered_report(load_spec(path), *tools, may_refuse=may_refuse)
 
 
 def _several(paths: Path | Sequence[Path]) -> Sequence[Path]:

@@ -97,7 +97,7 @@ def matrix(  # noqa: PLR0913 - the options of a command
         raise StepgenError.of("no spec in specs/; name the specs", place=str(_DEFAULT_FOLDER))
     if not (verify or builds):
         raise StepgenError.of("--no-verify and --no-builds leave nothing to do; remove one")
-    made = api.generate_all(paths)
+    made = api.render_all(paths)
     # Before anything runs: it refuses boards and compilers that are not there.
     plan = api.plan_builds(made, compilers=compilers or (), boards=boards or ())
     if github:
@@ -105,8 +105,7 @@ def matrix(  # noqa: PLR0913 - the options of a command
         return
     sections = []
     if verify:
-        names = compilers or api.compilers()
-        sections.append(matrix_reports.section(paths, names, simulator, jobs))
+        sections.append(matrix_reports.section(paths, compilers or (), simulator, jobs))
     if builds:
         sections.append(matrix_builds.section(plan, libraries or (), jobs))
     _show(sections)

@@ -11,10 +11,10 @@ from stepgen.commands.matrix_section import Section
 from stepgen.commands.report import progress
 
 if TYPE_CHECKING:
-    from stepgen.verify.ide_matrix import Builds, Job, Outcome
+    from stepgen.verify.ide_matrix import Build, Builds, Outcome
     from stepgen.verify.junit import Case
 
-    _Results = Mapping[Job, Outcome]
+    _Results = Mapping[Build, Outcome]
 
 _COUNT = "examples"
 
@@ -51,7 +51,7 @@ class _Building:
     def __len__(self) -> int:
         return len(self._plan.jobs)
 
-    def __iter__(self) -> "Iterator[tuple[Job, Outcome]]":
+    def __iter__(self) -> "Iterator[tuple[Build, Outcome]]":
         return api.build(self._plan, libraries=self._libraries, jobs=self._jobs)
 
 
@@ -72,8 +72,8 @@ def _table(results: "_Results") -> tuple[str, Sequence[str], Sequence[Sequence[s
     return ("Built by arduino-builder: flash and RAM of the largest example", heading, rows)
 
 
-def _by_spec(results: "_Results") -> "dict[str, dict[str, dict[Job, Outcome]]]":
-    found: dict[str, dict[str, dict[Job, Outcome]]] = {}
+def _by_spec(results: "_Results") -> "dict[str, dict[str, dict[Build, Outcome]]]":
+    found: dict[str, dict[str, dict[Build, Outcome]]] = {}
     for job, outcome in results.items():
         targets = found.setdefault(job.spec.stem, {})
         targets.setdefault(job.target.title, {})[job] = outcome
@@ -142,7 +142,7 @@ def _failures(results: "_Results") -> Iterator[str]:
         yield f"{found[0]}{more}: {line}"
 
 
-def _place(job: "Job") -> str:
+def _place(job: "Build") -> str:
     return f"{job.spec}: {job.example} ({job.target.title}, {job.compiler.name})"
 
 

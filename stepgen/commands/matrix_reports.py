@@ -3,7 +3,6 @@ The part of ``stepgen matrix`` that verifies: spec by compiler by simulator.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Future, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,26 +18,22 @@ if TYPE_CHECKING:
 _ALL = "all"
 _FIGURES = ("flash", "RAM", "a step", "longest")
 
-_Job = tuple[Path, str, str]
-"""Spec, compiler and simulator."""
-
-_Results = Mapping[_Job, "SpecReport | str"]
+_Results = Mapping[api.Job, "SpecReport | str"]
 
 
 def section(paths: Sequence[Path], compilers: Sequence[str], simulator: str, jobs: int) -> Section:
     """
-    Verify each of *paths* with each compiler on *simulator*, a name or ``all``.
+    Verify each of *paths* with each compiler, or all, on *simulator*, a name or ``all``.
     """
-    simulators = [*api.tolerances()] if simulator == _ALL else [simulator]
-    results = _run(
-        [(path, compiler, name) for path in paths for compiler in compilers for name in simulators],
-        jobs,
-        may_refuse=simulator == _ALL,
-    )
+    chosen = None if simulator == _ALL else [simulator]
+    with progress("verifying") as track:
+        results = api.matrix(paths, compilers=compilers, simulators=chosen, jobs=jobs, track=track)
+    simulators = list(dict.fromkeys(name for _, _, name in results))
+    used = list(dict.fromkeys(compiler for _, compiler, _ in results))
     rows: list[tuple[str, ...]] = []
     for path in paths:
         rows.append((path.stem,))
-        rows += (_row(path, compiler, simulators, results) for compiler in compilers)
+        rows += (_row(path, compiler, simulators, results) for compiler in used)
     heading = ("", *map(_title, simulators), *_FIGURES)
     return Section(
         "verification",
@@ -46,36 +41,6 @@ def section(paths: Sequence[Path], compilers: Sequence[str], simulator: str, job
         (*_left_out(results), *_failures(results)),
         tuple(_cases(results)),
     )
-
-
-def _run(jobs: Sequence[_Job], at_once: int, *, may_refuse: bool) -> _Results:
-    from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - slow to import
-
-    with ProcessPoolExecutor(max_workers=at_once) as pool:
-        futures = {pool.submit(_verify, *job, may_refuse=may_refuse): job for job in jobs}
-        with progress("verifying") as track:
-            for _ in track(_Finishing(futures)):
-                pass
-    return {job: future.result() for future, job in futures.items()}
-
-
-def _verify(path: Path, compiler: str, simulator: str, *, may_refuse: bool) -> "SpecReport | str":
-    return api.remembered(path, compiler=compiler, simulator=simulator, may_refuse=may_refuse)
-
-
-class _Finishing:
-    """
-    The futures in the order in which they finish, with a length for the progress bar.
-    """
-
-    def __init__(self, futures: dict[Future["SpecReport | str"], _Job]) -> None:
-        self._futures = futures
-
-    def __len__(self) -> int:
-        return len(self._futures)
-
-    def __iter__(self) -> Iterator[Future["SpecReport | str"]]:
-        return as_completed(self._futures)
 
 
 def _title(simulator: str) -> str:

@@ -29,7 +29,7 @@ _RESULT = "result.json"
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class Build:
     """
     One build: an example of a library on a board with a compiler.
 
@@ -115,7 +115,7 @@ class Builds:
         unfit: Spec -> boards with its chip that it does not fit, and why.
     """
 
-    jobs: tuple[Job, ...]
+    jobs: tuple[Build, ...]
     unfit: Mapping[Path, Mapping[Target, str]]
 
     def github(self) -> dict[str, list[dict[str, str]]]:
@@ -154,13 +154,13 @@ def plan_builds(
         StepgenError: One of *boards* is none of the core's, or fits no library.
     """
     wanted = tuple(_target_called(name) for name in boards)
-    jobs: list[Job] = []
+    jobs: list[Build] = []
     unfit = {}
     for plan, spec, files in libraries:
         fits, reasons = fitting(plan.board)
         unfit[spec] = {one: why for one, why in reasons.items() if not wanted or one in wanted}
         jobs += (
-            Job(spec, plan.library.name, files, example, target, compiler)
+            Build(spec, plan.library.name, files, example, target, compiler)
             for target in fits
             if not wanted or target in wanted
             for compiler in compilers
@@ -182,8 +182,8 @@ def _target_called(name: str) -> Target:
 
 
 def run_jobs(
-    jobs: Sequence[Job], libraries: Sequence[Path] = (), *, at_once: int = 1
-) -> Iterator[tuple[Job, Outcome]]:
+    jobs: Sequence[Build], libraries: Sequence[Path] = (), *, at_once: int = 1
+) -> Iterator[tuple[Build, Outcome]]:
     """
     Build *jobs*, several at once, and yield each with its outcome as it is done.
 
@@ -213,7 +213,7 @@ def core_warnings(builds: Builds) -> dict[str, tuple[str, ...]]:
     return {name: tuple(lines) for name, lines in found.items()}
 
 
-def _outcome(job: Job, libraries: Sequence[Path], others: str) -> Outcome:
+def _outcome(job: Build, libraries: Sequence[Path], others: str) -> Outcome:
     sources = {
         path: text
         for path, text in job.files.items()
@@ -233,7 +233,7 @@ def _outcome(job: Job, libraries: Sequence[Path], others: str) -> Outcome:
     return Outcome(**fields)
 
 
-def _build(job: Job, libraries: Sequence[Path], out: Path) -> None:
+def _build(job: Build, libraries: Sequence[Path], out: Path) -> None:
     own = _library(job)
     with tempfile.TemporaryDirectory(prefix="stepgen-ide-") as folder:
         built = build_with_ide(
@@ -249,7 +249,7 @@ def _build(job: Job, libraries: Sequence[Path], out: Path) -> None:
     (out / _RESULT).write_text(json.dumps(asdict(outcome)), encoding="utf-8")
 
 
-def _library(job: Job) -> Path:
+def _library(job: Build) -> Path:
     """
     Return a libraries folder with nothing but the library of *job* in it.
     """

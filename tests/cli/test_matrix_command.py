@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 
 from stepgen import api
 from stepgen.cli import app
-from stepgen.verify.ide_matrix import Builds, Job, Outcome
+from stepgen.verify.ide_matrix import Build, Builds, Outcome
 from stepgen.verify.report import MotorFigures, SpecReport
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -28,7 +28,7 @@ def no_simulation(monkeypatch: pytest.MonkeyPatch) -> None:
     """
 
     def remembered(
-        path: Path, *, compiler: str, simulator: str, may_refuse: bool
+        path: Path, compiler: str, simulator: str, *, may_refuse: bool
     ) -> SpecReport | str:
         assert compiler.startswith("gcc")
         if may_refuse and simulator == "yasimavr" and path == MEGA:
@@ -39,7 +39,7 @@ def no_simulation(monkeypatch: pytest.MonkeyPatch) -> None:
         return report
 
     monkeypatch.setattr(api, "tolerances", lambda: {"simavr": 0, "avr8js": 0, "yasimavr": 1})
-    monkeypatch.setattr(api, "remembered", remembered)
+    monkeypatch.setattr(api, "_remembered", remembered)
 
 
 def rows(output: str) -> dict[tuple[str, ...], list[str]]:
@@ -95,19 +95,19 @@ def test_where_all_agree_it_succeeds() -> None:
     assert matrix(MEGA, "--no-builds").exit_code == 0
 
 
-Build = Callable[[Job], Outcome]
+Pretence = Callable[[Build], Outcome]
 
 
 @pytest.fixture
-def pretend(monkeypatch: pytest.MonkeyPatch) -> Callable[[Build], None]:
+def pretend(monkeypatch: pytest.MonkeyPatch) -> Callable[[Pretence], None]:
     """
     Return a function that has a function say what comes of each build.
     """
 
-    def replace(build: Build) -> None:
+    def replace(build: Pretence) -> None:
         def run(
             builds: Builds, *, libraries: Sequence[Path], jobs: int
-        ) -> Iterator[tuple[Job, Outcome]]:
+        ) -> Iterator[tuple[Build, Outcome]]:
             assert jobs >= 1
             assert not libraries
             yield from ((job, build(job)) for job in reversed(builds.jobs))
@@ -125,14 +125,16 @@ def junit_suite(report: Path) -> ET.Element:
     return ET.parse(report).getroot()[0]  # noqa: S314 - our own
 
 
-def built(job: Job) -> Outcome:
+def built(job: Build) -> Outcome:
     """
     Return a build that passed: the more letters its example has the more flash it takes.
     """
     return Outcome(1000 * len(job.example), 100)
 
 
-def test_the_builds_have_a_row_for_each_board_that_fits(pretend: Callable[[Build], None]) -> None:
+def test_the_builds_have_a_row_for_each_board_that_fits(
+    pretend: Callable[[Pretence], None],
+) -> None:
     """
     With the flash of the largest example; boards of another clock are named with the reason.
     """
@@ -159,7 +161,7 @@ def test_the_builds_have_a_row_for_each_board_that_fits(pretend: Callable[[Build
     ],
 )
 def test_a_warning_about_our_code_and_a_failure_fail(
-    wrong: Outcome, words: str, pretend: Callable[[Build], None], tmp_path: Path
+    wrong: Outcome, words: str, pretend: Callable[[Pretence], None], tmp_path: Path
 ) -> None:
     """
     The cell says FAILED, the reason comes below, and the JUnit report has it.
@@ -179,7 +181,7 @@ def test_a_warning_about_our_code_and_a_failure_fail(
 
 
 def test_warnings_about_others_and_missing_libraries_fail_nothing(
-    pretend: Callable[[Build], None], tmp_path: Path
+    pretend: Callable[[Pretence], None], tmp_path: Path
 ) -> None:
     """
     Both are said; an example without its library is skipped in the JUnit report.

@@ -11,7 +11,7 @@ from stepgen import api
 from stepgen.devices import boards, find_board
 from stepgen.verify import ide_matrix
 from stepgen.verify.compilers import find_compilers
-from stepgen.verify.ide_matrix import Builds, Job, Outcome, fitting, run_jobs
+from stepgen.verify.ide_matrix import Build, Builds, Outcome, fitting, run_jobs
 from stepgen.verify.recipes import board_properties, targets
 from tests.sim.kinds import KINDS
 
@@ -40,10 +40,10 @@ def builds_of(*specs: Path) -> Builds:
     """
     Return all builds of the libraries of *specs*.
     """
-    return api.plan_builds(api.generate_all(specs))
+    return api.plan_builds(api.render_all(specs))
 
 
-def outcomes(jobs: list[Job], *libraries: Path) -> list[Outcome]:
+def outcomes(jobs: list[Build], *libraries: Path) -> list[Outcome]:
     """
     Return what comes of *jobs*, in their order.
     """
@@ -60,12 +60,12 @@ def fresh(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def sketch() -> Callable[[str], Job]:
+def sketch() -> Callable[[str], Build]:
     """
     Return a function that makes a build of a library with one function, from the sketch's text.
     """
 
-    def make(text: str, source: str = "int tryMe() { return 1; }\n") -> Job:
+    def make(text: str, source: str = "int tryMe() { return 1; }\n") -> Build:
         files = {
             "library.properties": (
                 "name=TryMe\nversion=1.0.0\nauthor=a\nmaintainer=a\nsentence=a\nparagraph=a\n"
@@ -76,7 +76,7 @@ def sketch() -> Callable[[str], Job]:
             "examples/Try/Try.ino": f"#include <TryMe.h>\n{text}",
         }
         (target,) = (target for target in targets() if target.title == "uno")
-        return Job(Path("try.yaml"), "TryMe", files, "Try", target, find_compilers()[0])
+        return Build(Path("try.yaml"), "TryMe", files, "Try", target, find_compilers()[0])
 
     return make
 
@@ -106,7 +106,7 @@ def test_every_board_of_stepgen_is_one_of_the_core() -> None:
 
 @pytest.mark.usefixtures("fresh")
 def test_what_was_built_is_not_built_again(
-    sketch: Callable[[str], Job], monkeypatch: pytest.MonkeyPatch
+    sketch: Callable[[str], Build], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """
     The second time the builder is not run; it is where the sketch or another library differs.
@@ -136,7 +136,7 @@ def test_what_was_built_is_not_built_again(
 
 @pytest.mark.usefixtures("fresh")
 def test_a_warning_counts_by_whose_code_it_is_about(
-    sketch: Callable[..., Job], tmp_path: Path
+    sketch: Callable[..., Build], tmp_path: Path
 ) -> None:
     """
     Ours are those about the library and the sketch; those about a library beside it are others.
@@ -165,7 +165,7 @@ def test_a_warning_counts_by_whose_code_it_is_about(
 
 
 @pytest.mark.usefixtures("fresh")
-def test_a_missing_library_is_told_from_a_failure(sketch: Callable[[str], Job]) -> None:
+def test_a_missing_library_is_told_from_a_failure(sketch: Callable[[str], Build]) -> None:
     """
     A header that nobody has leaves the example out; anything else fails it.
     """

@@ -9,10 +9,20 @@ import pytest
 
 from stepgen import api
 from stepgen.verify import remembered
+from stepgen.verify.compilers import default_compiler
 from stepgen.verify.report import MotorFigures, SpecReport
+from stepgen.verify.simulators import SIMAVR
 
 SPEC = "library: Kept\nboard: uno\nmotors:\n  motor: {drive: motor-shield, timer: 1}\n"
 Verified = Callable[[str], list[str]]
+
+
+def report_of(spec: Path, *, may_refuse: bool = False) -> SpecReport | str:
+    """
+    Return the report of *spec* on simavr, or why that cannot be used.
+    """
+    tools = (default_compiler(), SIMAVR)
+    return remembered.remembered_report(api.load(spec), *tools, may_refuse=may_refuse)
 
 
 @pytest.fixture
@@ -37,7 +47,7 @@ def verified(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Verified:
     def ask(text: str) -> list[str]:
         spec.write_text(text, encoding="utf-8")
         runs.clear()
-        first, second = (api.remembered(spec, compiler="gcc-5.4") for _ in range(2))
+        first, second = (report_of(spec) for _ in range(2))
         assert first == second
         assert isinstance(first, SpecReport)
         assert first.motors["motor"].measured_max == 7
@@ -88,6 +98,5 @@ def test_why_a_simulator_is_not_used_is_kept_too(
     monkeypatch.setattr(remembered, "refusal", refuse)
 
     for _ in range(2):
-        found = api.remembered(spec, compiler="gcc-5.4", may_refuse=True)
-        assert found == "has no such chip"
+        assert report_of(spec, may_refuse=True) == "has no such chip"
     assert len(asked) == 1
