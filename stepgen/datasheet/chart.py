@@ -51,7 +51,7 @@ def motion_chart(motor: MotorPlan, plan: Plan) -> Chart:
     """
     Return speed against time of *motor*: its ramps, or one turn to and fro where it has none.
     """
-    curves = _ramps(motor, plan) if motor.motion.watches_clock else ()
+    curves = _ramps(motor, plan) if motor.motion.changes_speed else ()
     note = (
         "From slow to the highest rate by update events: equal changes of the interval, or halved "
         "ones. stepgen plan works out others."

@@ -75,6 +75,7 @@ _SWITCH_CODES = {"MOTOR_ERROR_RUNNING"}
 _SWITCH_FUNCTIONS = ("Hold", "Release")
 _MISSED_BITS = {"MOTOR_STAT_MISSED"}
 _MISSED_FUNCTIONS = ("ReadMissed",)
+_TIMED_FUNCTIONS = ("KeepAlive", "TimedOut")
 _CHANGING_FUNCTIONS = ("TimerUpdateCheck", "CallBackPositionReached", "CallBackFault")
 _RANGE = ("MOTOR_MIN_TOP", "MOTOR_MAX_TOP")
 
@@ -110,6 +111,7 @@ def function_names(plan: Plan) -> tuple[str, ...]:
         parts += _MISSED_FUNCTIONS if tells_missed(motor) else ()
         parts += _SWITCH_FUNCTIONS if motor.switches_current else ()
         parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
+        parts += _TIMED_FUNCTIONS if motor.command_timeout_ms is not None else ()
         parts += ("StepsForTurns",) if motor.steps_per_turn is not None else ()
         parts += lengths.FUNCTIONS if motor.steps_per_mm is not None else ()
         names += [f"{motor.name}{part}" for part in parts]

@@ -120,7 +120,7 @@ def examples_view(plan: Plan) -> ExamplesView:
     Console and WiringTest speak through Serial: where its pins have another owner they are absent.
     """
     names = listed([motor.name for motor in plan.motors])
-    changing = [motor for motor in plan.motors if motor.motion.watches_clock]
+    changing = [motor for motor in plan.motors if motor.motion.changes_speed]
     ramps = tuple(ramp for ramp in (_ramp(motor, plan) for motor in changing) if ramp)
     ramped = {ramp.motor: f"{ramp.motor}Ramp" for ramp in ramps}
     coils = tuple(_coils(motor) for motor in plan.motors if _has_order(motor))

@@ -45,9 +45,10 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
         f'[think] "I"({THINK_BIT})',
     ]
     if motor.motion.watches_clock:
+        wake = f"{motor.name}{'Motion.wake' if motor.motion.changes_speed else 'Deadline'}"
         operands += [
             f'[clock] "I"({CLOCK_BIT})',
-            f'[wake] "i"(&{motor.name}Motion.wake)',
+            f'[wake] "i"(&{wake})',
             '[millis] "i"(&timer0_millis)',
         ]
     for name, register in motor.gate.registers:

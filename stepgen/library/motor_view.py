@@ -48,6 +48,16 @@ class Turns:
 
 
 @dataclass(frozen=True)
+class Timeout:
+    """
+    The command time-out: its milliseconds, and the call that stops the motor in the same way.
+    """
+
+    millis: str
+    stop_call: str
+
+
+@dataclass(frozen=True)
 class MotorView:
     """
     One motor, as its parts of header and source need it.
@@ -65,6 +75,8 @@ class MotorView:
     kernel_name: str
     timing_name: str
     motion_name: str
+    timeout_name: str
+    timeout: Timeout | None
     has_updates: bool
     tells_missed: bool
     dump_name: str
@@ -116,7 +128,9 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         kernel_name=motor.kernel.kind,
         timing_name=module_name(motor.timing.kind),
         motion_name=module_name(motor.motion.kind),
-        has_updates=motor.motion.watches_clock,
+        timeout_name="none" if motor.command_timeout_ms is None else "command",
+        timeout=_timeout(motor),
+        has_updates=motor.motion.changes_speed,
         tells_missed=tells_missed(motor),
         dump_name=dump_name(motor) if motor.motion.dumps else "",
         kernel=kernel_view(motor.kernel),
@@ -171,6 +185,14 @@ def _turns(motor: MotorPlan) -> Turns | None:
         f"static_cast<uint32_t>((turns * {steps.numerator}ULL + {half}) / {steps.denominator})",
         f"Steps for whole turns, rounded: {float(steps):.6g} in each{limit}.",
     )
+
+
+def _timeout(motor: MotorPlan) -> Timeout | None:
+    millis = motor.command_timeout_ms
+    if millis is None:
+        return None
+    stop = f"{motor.name}SetSpeed(MOTOR_CTRL_DRV_EN, 0)"
+    return Timeout(str(millis), stop)
 
 
 def _variables(motor: MotorPlan) -> tuple[Named, ...]:

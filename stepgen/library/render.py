@@ -119,5 +119,6 @@ def _partials(made: Environment, view: LibraryView) -> dict[str, object]:
         "kernels": modules("kernels", {motor.kernel_name for motor in view.motors}),
         "timings": modules("timings", timings),
         "motions": modules("motions", {motor.motion_name for motor in view.motors}),
+        "timeouts": modules("timeouts", {motor.timeout_name for motor in view.motors}),
         "others": modules("others", {other.partial for other in view.examples.neighbours}),
     }

@@ -14,7 +14,7 @@ from stepgen.library.api_view import (
     status_bits,
 )
 from stepgen.library.examples_view import ExamplesView, examples_view
-from stepgen.library.hot_view import THINK_BIT
+from stepgen.library.hot_view import CLOCK_BIT, THINK_BIT
 from stepgen.library.motor_view import MotorView, Named, motor_view
 from stepgen.library.prose import paragraph, takes, title
 from stepgen.library.rates_view import HeldRow, held_rows, lateness, speeds
@@ -66,6 +66,8 @@ class LibraryView:
     motion_names: tuple[str, ...]
     motion_structs: tuple[MotionStruct, ...]
     think_bit: int
+    clock_bit: int
+    watches_clock: bool
     releases: bool
     dumps: bool
     timing_names: tuple[str, ...]
@@ -113,6 +115,8 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
         motion_structs=_motion_structs(motors),
         think_bit=THINK_BIT,
+        clock_bit=CLOCK_BIT,
+        watches_clock=any(motor.motion.watches_clock for motor in plan.motors),
         releases=any(motor.releases for motor in motors),
         dumps=any(motor.motion.dumps for motor in plan.motors),
         timing_names=tuple(sorted({motor.timer.shared_by for motor in motors})),

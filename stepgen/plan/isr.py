@@ -24,6 +24,8 @@ class Motion:
     Args:
         kind: The spec's name of the motion.
         watches_clock: Whether each step looks if the clock has come to a moment to wake up at.
+        changes_speed: Whether update events change the speed; at such a moment the handler may
+            then make the step.
         handler_cycles: How much longer the handler of the rare ways can take, at most.
         to_clock_cycles: How much later it starts the clock of a timer that it sets anew.
         thinking_cycles: The same when it made the step itself.
@@ -44,6 +46,7 @@ class Motion:
     dumps: bool = False
     setting_cycles: int = 0
     masked_setting_cycles: int = 0
+    changes_speed: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,15 +90,14 @@ def compose(
     mcu: Mcu,
     handler: str,
     gate: Gate,
-    *,
-    watches_clock: bool = False,
+    motion: Motion,
 ) -> HotPath:
     """
     Return the step interrupt of *kernel*; its rare ways go on in the function *handler*.
 
-    The *gate* of the timing comes first. With *watches_clock* each step then looks whether the
-    clock has come to the motor's next moment; the handler then goes before the step, and the count
-    has not been touched.
+    The *gate* of the timing comes first. Where the *motion* watches the clock, each step then looks
+    whether it has come to the motor's next moment; the handler then goes before the step, and the
+    count has not been touched.
     """
     saved = saved_registers(kernel)
     entry = (
@@ -129,8 +131,8 @@ def compose(
         *leave[1:],
         Instruction(f"jmp   {handler}", 3),
     )
-    look, clock = _clock_watch() if watches_clock else ((), ())
-    if watches_clock:
+    look, clock = _clock_watch() if motion.watches_clock else ((), ())
+    if motion.watches_clock:
         count = (replace(count[0], label="4"), *count[1:])
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
     until_gate = arrival + total_cycles(entry)
@@ -141,9 +143,9 @@ def compose(
     reti = Instruction("reti", mcu.response_cycles)
     onward = (*look, *count, *step, *end_code(kernel, leave), reti)
     usual_cycles = until_gate + gate.step_cycles + total_cycles(onward)
-    looked = _CLOCK_TAKEN_CYCLES + total_cycles(clock) if watches_clock else 0
+    looked = _CLOCK_TAKEN_CYCLES + total_cycles(clock) if motion.watches_clock else 0
     overrun = gate.overrun_cycles
-    due = until_count + looked if watches_clock else until_rare_step + 1
+    due = looked + (until_count if motion.changes_speed else until_rare_step + 1)
     return HotPath(
         usual=(*entry, *gate.instructions, *onward),
         boundary=(*think, *rare_step, *out),

@@ -140,6 +140,7 @@ class MotorPlan:
         releases_at_rest: Whether the coils go off when it comes to rest.
         owns_ports: Whether the sketch leaves the motor's ports alone.
         wish_steps_per_second: The highest rate that the sketch will ask for, or None.
+        command_timeout_ms: How long it runs without a word from the sketch, or None: for ever.
     """
 
     name: str
@@ -156,6 +157,7 @@ class MotorPlan:
     releases_at_rest: bool
     owns_ports: bool
     wish_steps_per_second: Fraction | None = None
+    command_timeout_ms: int | None = None
 
     @property
     def isr_bound_cycles(self) -> int:

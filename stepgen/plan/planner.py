@@ -225,7 +225,7 @@ def _plan_motor(
         return None
     # avr-gcc takes a function for an interrupt handler only when it is called __vector...
     handler = f"__vector_{name}_boundary"
-    motion = plan_motion(motor.motion)
+    motion = plan_motion(motor.motion, timed=motor.command_timeout_ms is not None)
     gate = plan_gate(timing, storage, board.mcu)
     return MotorPlan(
         name=name,
@@ -236,14 +236,13 @@ def _plan_motor(
         storage=storage,
         handler=handler,
         gate=gate,
-        hot_path=compose(
-            kernel, storage, board.mcu, handler, gate, watches_clock=motion.watches_clock
-        ),
+        hot_path=compose(kernel, storage, board.mcu, handler, gate, motion),
         steps_per_turn=_steps_per_turn(motor, drive),
         steps_per_mm=motor.steps_per_mm,
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",
         wish_steps_per_second=motor.max_steps_per_second,
+        command_timeout_ms=motor.command_timeout_ms,
     )
 
 

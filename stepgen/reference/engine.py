@@ -10,7 +10,7 @@ from stepgen.reference.facts import MotorFacts
 from stepgen.reference.motion import Motion
 from stepgen.reference.notices import Notices
 from stepgen.reference.pace import Pace
-from stepgen.reference.stimuli import SetSpeed
+from stepgen.reference.stimuli import UINT32_STATES, SetSpeed
 from stepgen.reference.timer import TimerSetting
 
 
@@ -27,6 +27,7 @@ class Engine:
         millis: What ``millis()`` returns.
         motion: The present motion, or the last one until it is forgotten.
         running: Whether a step of it may still come.
+        heard_millis: What ``millis()`` returned when the sketch last gave a sign of life.
     """
 
     facts: MotorFacts
@@ -36,6 +37,7 @@ class Engine:
     millis: int = 0
     motion: Motion | None = None
     running: bool = False
+    heard_millis: int = 0
 
     def start(self, call: SetSpeed, call_index: int) -> None:
         """
@@ -49,7 +51,14 @@ class Engine:
         if self.pace.deadline_cycle is None:
             self.pace.begin(self._first_interval(motion, from_rest=not self.running))
         self.notices.clear()
+        self.hear()
         self.motion, self.running = motion, True
+
+    def hear(self) -> None:
+        """
+        Let the command time-out begin anew.
+        """
+        self.heard_millis = self.millis
 
     def _first_interval(self, motion: Motion, *, from_rest: bool) -> TimerSetting:
         """
@@ -110,11 +119,23 @@ class Engine:
         motion = self.motion
         if motion is None or not self.running:
             self._release(deadline)
+        elif self._left_alone():
+            self.running = False
+            self.notices.left_alone()
+            self._release(deadline)
+            self.motion = None
         elif motion.ended_at(self.millis):
             self._end()
             self._release(deadline)
         else:
             self._step(motion, deadline)
+
+    def _left_alone(self) -> bool:
+        """
+        Tell whether the command time-out is over: (millis - heard) mod 2^32 >= time-out.
+        """
+        timeout = self.facts.command_timeout_millis
+        return timeout is not None and (self.millis - self.heard_millis) % UINT32_STATES >= timeout
 
     def _step(self, motion: Motion, deadline: int) -> None:
         self.axis.step(deadline, motion.direction, motion.call_index)

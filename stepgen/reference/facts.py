@@ -31,6 +31,8 @@ class MotorFacts:
         has_direction: Whether *phases* are what the wires show forward and backward, not a table
             to go along.
         wake_cycles: The shortest first interval from rest, as a virtual value.
+        command_timeout_millis: How long after the last word of the sketch a step is still made, as
+            ``millis()`` counts; None for ever.
     """
 
     phases: tuple[Pattern, ...]
@@ -43,6 +45,7 @@ class MotorFacts:
     overrun_cycles: int | None = None
     has_direction: bool = False
     wake_cycles: int = 0
+    command_timeout_millis: int | None = None
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:

@@ -23,6 +23,7 @@ from stepgen.reference.stimuli import (
     Edge,
     Hold,
     Init,
+    KeepAlive,
     MillisTick,
     Release,
     SetSpeed,
@@ -92,6 +93,13 @@ class MotorModel:
         Return the deadlines since Init that were served too late, as uint16.
         """
         return self._notices.overruns
+
+    @property
+    def timed_out(self) -> bool:
+        """
+        Tell whether the command time-out ended the last motion.
+        """
+        return self._notices.timed_out
 
     @property
     def running(self) -> bool:
@@ -202,6 +210,8 @@ class MotorModel:
             case Callbacks():
                 self._notices.has_reached_callback = stimulus.reached
                 self._notices.has_fault_callback = stimulus.fault
+            case KeepAlive():
+                self._engine.hear()
             case UpdateCheck():
                 self._engine.update_check()
             case CallBack():

@@ -23,6 +23,7 @@ class Notices:
         has_fault_callback: Whether one for faults is registered.
         made: Each callback so far, with the cycle of the check that made it.
         overruns: Deadlines since Init that were served too late, 16 bits.
+        timed_out: Whether the command time-out ended the last motion.
     """
 
     status: Status = field(default_factory=lambda: Status(0))
@@ -30,6 +31,7 @@ class Notices:
     has_fault_callback: bool = False
     made: list[CallbackMade] = field(default_factory=list)
     overruns: int = 0
+    timed_out: bool = False
     _at_end_point: bool = False
 
     def clear(self) -> None:
@@ -37,6 +39,7 @@ class Notices:
         Clear all bits; a callback that has not been made yet is dropped.
         """
         self.status = Status(0)
+        self.timed_out = False
         self._at_end_point = False
 
     def fault(self, bits: Status) -> None:
@@ -58,6 +61,13 @@ class Notices:
         Set REACHED for a stop, which is no end point: it calls nobody back.
         """
         self.status |= Status.REACHED
+
+    def left_alone(self) -> None:
+        """
+        Note a stop by the command time-out, which is one like any other.
+        """
+        self.stopped()
+        self.timed_out = True
 
     def end_point(self) -> None:
         """

@@ -128,6 +128,15 @@ class CallBack:
 
 
 @dataclass(frozen=True)
+class KeepAlive:
+    """
+    A call of ``motorKeepAlive``, at the moment it masks the interrupts; it has no code.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
 class Callbacks:
     """
     From this cycle on these callbacks are registered; before the first, none is.
@@ -144,7 +153,7 @@ class Callbacks:
 
 
 Call = SetSpeed | Hold | Release | Init
-Stimulus = Call | UpdateCheck | CallBack | Callbacks | ClockOn | MillisTick
+Stimulus = Call | UpdateCheck | CallBack | KeepAlive | Callbacks | ClockOn | MillisTick
 
 
 class EdgeKind(StrEnum):

@@ -173,6 +173,8 @@ class Motor(SpecModel):
     """What it may take of the chip at most, else verification fails."""
     max_steps_per_second: Ratio | None = None
     """The highest rate that the sketch will ask for; without it all that is proven."""
+    command_timeout_ms: Annotated[int, Field(ge=10, le=30_000)] | None = None
+    """How long it may run without a word from the sketch; then it stops. Without it for ever."""
 
 
 def _motor_name(name: str) -> str:

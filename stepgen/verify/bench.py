@@ -13,7 +13,7 @@ from stepgen.plan.model import Plan
 from stepgen.verify.events import Events
 from stepgen.verify.simulators import SIMAVR, Simulator
 
-_MAILBOX = Struct("<BBBBIIIHHHbBiH")
+_MAILBOX = Struct("<BBBBIIIHHHbBiHB")
 _DELAY = Struct("<H")
 _LOOP_OFFSET = 2
 _DELAY_OFFSET = 20
@@ -56,6 +56,7 @@ class CallKind(IntEnum):
     INIT = 5
     UPDATE_CHECK = 6
     CALLBACKS = 7
+    KEEP_ALIVE = 8
     HOLD_UP = 12
     DIVIDE_CLOCK = 13
     TOP_PER_SECOND = 14
@@ -98,6 +99,7 @@ class Answer:
     status: int
     position: int
     missed: int = 0
+    timed_out: int = 0
 
 
 @dataclass
@@ -179,10 +181,10 @@ class Bench:
         end = self._run_to_mark(_MARK_END, call)
         self.machine.fine = False
         self._run_until_free(call)
-        *_, result, status, position, missed = _MAILBOX.unpack(
+        *_, result, status, position, missed, timed_out = _MAILBOX.unpack(
             self.machine.read_ram(self._mailbox, _MAILBOX.size)
         )
-        answer = Answer(call, begin, end, result, status, position, missed)
+        answer = Answer(call, begin, end, result, status, position, missed, timed_out)
         self.answers.append(answer)
         self._due_cycle = end
         return answer
@@ -231,7 +233,7 @@ def mail(call: Call, loop: Loop) -> bytes:
     """
     update = (call.modification, call.interval, call.count)
     arguments = (call.kind, call.motor, loop, call.control, call.top, call.limit, *update)
-    return _MAILBOX.pack(*arguments, 0, 0, 0, 0, 0)
+    return _MAILBOX.pack(*arguments, 0, 0, 0, 0, 0, 0)
 
 
 def watched_registers(plan: Plan) -> list[int]:

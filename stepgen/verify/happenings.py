@@ -13,6 +13,7 @@ from stepgen.reference.stimuli import (
     ClockOn,
     Hold,
     Init,
+    KeepAlive,
     MillisTick,
     Release,
     SetSpeed,
@@ -71,7 +72,16 @@ class PositionRead:
     answer: Answer
 
 
-Happening = Told | StatusRead | PositionRead | MissedRead
+@dataclass(frozen=True)
+class TimeoutRead:
+    """
+    The same call reads whether the motor timed out: after the other sections, before its end.
+    """
+
+    answer: Answer
+
+
+Happening = Told | StatusRead | PositionRead | MissedRead | TimeoutRead
 Row = tuple[int, Order, Happening]
 
 
@@ -113,6 +123,7 @@ def _rows_of_call(answer: Answer, trace: Trace) -> Iterator[Row]:
         return
     yield cycle, Order.CALL, StatusRead(answer)
     yield second[0], Order.CALL, PositionRead(answer)
+    yield answer.end_cycle, Order.CALL, TimeoutRead(answer)
 
 
 def _rows_of_missed(answer: Answer, trace: Trace) -> Iterator[Row]:
@@ -136,6 +147,7 @@ def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:
         CallKind.RELEASE: Release(cycle),
         CallKind.INIT: Init(cycle),
         CallKind.UPDATE_CHECK: UpdateCheck(cycle),
+        CallKind.KEEP_ALIVE: KeepAlive(cycle),
         CallKind.CALLBACKS: Callbacks(cycle, bool(call.control & 1), bool(call.control & 2)),
     }
     return stimuli.get(call.kind)

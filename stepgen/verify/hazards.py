@@ -175,6 +175,8 @@ def _commands(plan: Plan, index: int) -> Iterator[Command]:
         yield Command("hold", (call(CallKind.HOLD),))
         yield Command("release", (call(CallKind.RELEASE),))
     yield Command("init", (call(CallKind.INIT),))
+    if plan.motors[index].command_timeout_ms is not None:
+        yield Command("keep alive", (call(CallKind.KEEP_ALIVE),))
     if _has_events(plan.motors[index]):
         changing = (_EVENTS | Control.IRQ_TIMING, 1_000, 1, 2)
         yield Command("update check", (call(CallKind.UPDATE_CHECK),))
@@ -190,4 +192,4 @@ def _short(plan: Plan) -> int:
 
 
 def _has_events(motor: MotorPlan) -> bool:
-    return motor.motion.watches_clock
+    return motor.motion.changes_speed

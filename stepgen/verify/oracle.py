@@ -18,6 +18,7 @@ from stepgen.verify.happenings import (
     MissedRead,
     PositionRead,
     StatusRead,
+    TimeoutRead,
     Told,
     happenings,
 )
@@ -94,6 +95,7 @@ class Oracle:
         self._model = MotorModel(subject.facts, self._service_cycle)
         self._edges: list[Edge] = []
         self._millis = 0
+        self._was_timed_out = False
         self._own: set[int] = set()
         self._later: dict[int, int] = {}
 
@@ -115,6 +117,8 @@ class Oracle:
                     self._compare_position(cycle, answer, result)
                 case MissedRead(answer):
                     self._compare_missed(cycle, answer, result)
+                case TimeoutRead(answer):
+                    self._compare_timed_out(cycle, answer, result)
         self._advance(self._scene.until_cycle)
         return self._edges
 
@@ -195,6 +199,7 @@ class Oracle:
 
     def _compare_position(self, cycle: int, answer: Answer, result: Comparison) -> None:
         self._advance(cycle)
+        self._was_timed_out = self._model.timed_out
         position = self._model.position
         if answer.position != position:
             result.report(f"position {answer.position} at cycle {cycle}, the model says {position}")
@@ -204,3 +209,12 @@ class Oracle:
         overruns = self._model.overruns
         if answer.missed != overruns:
             result.report(f"{answer.missed} missed at cycle {cycle}, the model says {overruns}")
+
+    def _compare_timed_out(self, cycle: int, answer: Answer, result: Comparison) -> None:
+        """
+        Report an answer that was right neither when the position was read nor when the call ended.
+        """
+        self._advance(cycle)
+        known = (self._was_timed_out, self._model.timed_out)
+        if answer.timed_out not in known:
+            result.report(f"timed out {answer.timed_out} at cycle {cycle}, the model says {known}")

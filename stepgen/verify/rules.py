@@ -22,7 +22,7 @@ from stepgen.verify.trace import ClockStart, Run
 _CALIBRATION_CYCLES = 8
 # Status, then position; one callback, then the other.
 _MASKED_SECTIONS = {CallKind.READ: 2, CallKind.CALLBACKS: 2}
-_NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS}
+_NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS, CallKind.KEEP_ALIVE}
 
 
 def broken_rules(
@@ -156,7 +156,7 @@ def _late_edges(
         if run is None or not run.writes:
             continue
         call = calls[step.call_index].call
-        thinks = motor.motion.watches_clock or (
+        thinks = motor.motion.changes_speed or (
             call.control & Control.ENDPOINT_MILLIS and call.limit
         )
         latest = motor.isr_bound_cycles if thinks else path.boundary_edge_cycles + WAKE_CYCLES

@@ -116,6 +116,9 @@ def _lacks(
     """
     if step.kind in SWITCHING and not motor.switches_current:
         yield ("call",), f"the motor {motor.name} has no ENABLE to switch; leave this out"
+    if step.kind is CallKind.KEEP_ALIVE and motor.command_timeout_ms is None:
+        way_out = "give it `command_timeout_ms`, or leave this out"
+        yield ("call",), f"the motor {motor.name} has no command time-out; {way_out}"
     known = _control_bits(motor)
     if known == ALL_CONTROL_BITS:
         return

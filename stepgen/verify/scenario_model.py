@@ -74,6 +74,7 @@ class CallStep(SpecModel):
         "init",
         "update_check",
         "callbacks",
+        "keep_alive",
         "hold_up",
         "divide_clock",
         "top_per_second",

@@ -139,5 +139,6 @@ def _facts(motor: Motor, drive: DriveFacts, plan: Plan, *, shares_enables: bool)
         timing=timing,
         shares_enables=shares_enables,
         has_direction=drive.pulse is not None,
+        command_timeout_millis=motor.command_timeout_ms,
         wake_cycles=drive.pulse.wake_cycles(timing) if drive.pulse else 0,
     )

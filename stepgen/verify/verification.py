@@ -18,6 +18,7 @@ from stepgen.verify.runner import Outcome, is_asleep, run_scenario
 from stepgen.verify.scenarios import Scenario, standard_scenarios
 from stepgen.verify.sharing_scenarios import sharing_scenarios
 from stepgen.verify.simulators import SIMAVR, Simulator
+from stepgen.verify.timeout_scenarios import timeout_scenarios
 from stepgen.verify.toolchain import Compiler
 from stepgen.verify.update_scenarios import update_scenarios
 
@@ -85,7 +86,7 @@ def _scenarios(plan: Plan) -> list[tuple[Scenario, bool]]:
     """
     Return the scenarios of *plan*, and of each whether it makes steps so late that they count.
     """
-    kinds = (standard_scenarios, update_scenarios, sharing_scenarios)
+    kinds = (standard_scenarios, update_scenarios, timeout_scenarios, sharing_scenarios)
     usual = [(scenario, False) for kind in kinds for scenario in kind(plan)]
     return [*usual, *((scenario, True) for scenario in late_scenarios(plan))]
 
@@ -135,5 +136,5 @@ def _judge(outcome: Outcome, plan: Plan, report: SpecReport) -> None:
         if not is_asleep(outcome.scenario):
             longest = comparison.longest_isr_cycles
             figures.measured_max = max(figures.measured_max, longest)
-        if comparison.steps >= _LONG_RUN_STEPS:
+        if comparison.steps >= _LONG_RUN_STEPS and not figures.cycles_per_step:
             figures.cycles_per_step = round(comparison.isr_cycles / comparison.steps, 2)

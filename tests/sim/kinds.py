@@ -21,4 +21,6 @@ KINDS = (
     "uno_drv8825",
     "leonardo_motor_shield",
     "micro_slider",
+    "uno_command_timeout",
+    "mega_command_timeouts",
 )

@@ -22,7 +22,9 @@ WEIGHTS = {
     CallKind.READ: 15,
     CallKind.INIT: 1,
 }
+TIMED_WEIGHTS = {CallKind.KEEP_ALIVE: 10}
 CHANGING_WEIGHTS = {CallKind.UPDATE_CHECK: 10, CallKind.CALLBACKS: 4}
+SILENCES = 0.02  # how often the sketch says nothing for as long as a command time-out
 COMMANDS = 300  # each followed by a wait of up to a few periods
 FIRST_SEED = 20_260_101
 CAMPAIGN_SEEDS = 40  # 12 000 commands for each kind of spec
@@ -37,8 +39,9 @@ def random_scenario(seed: int, plan: Plan) -> Scenario:
     actions: list[Action] = []
     for _ in range(COMMANDS):
         motor = random.randrange(motors)
-        changes = plan.motors[motor].motion.watches_clock
-        weights = {**WEIGHTS, **CHANGING_WEIGHTS} if changes else WEIGHTS
+        changes = plan.motors[motor].motion.changes_speed
+        timed = plan.motors[motor].command_timeout_ms
+        weights = WEIGHTS | (CHANGING_WEIGHTS if changes else {}) | (TIMED_WEIGHTS if timed else {})
         kind = random.choices(list(weights), weights=list(weights.values()))[0]
         control = random.choice([0x80, 0x81, 0x84, 0x85, 0x80 | random.randrange(128), 0])
         top = random.choice([0, random.randrange(600, 3_000), int(2 ** random.uniform(9, 21))])
@@ -49,6 +52,8 @@ def random_scenario(seed: int, plan: Plan) -> Scenario:
         else:
             actions.append(Call(kind, motor, control & 3 if kind is CallKind.CALLBACKS else 0))
         actions.append(Wait(int(2 ** random.uniform(4, 17))))
+        if timed and random.random() < SILENCES:
+            actions.append(Wait(timed * plan.board.f_cpu_hz // 1000))
         actions.append(Call(CallKind.READ, motor))
     return Scenario(f"seed {seed}", random.choice([Loop.BUSY, Loop.HOSTILE]), tuple(actions))
 

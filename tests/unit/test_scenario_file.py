@@ -17,6 +17,7 @@ from stepgen.verify.scenarios import Action, Scenario, Wait
 
 SPECS = Path(__file__).parents[2] / "specs"
 CONSTANT = api.plan(SPECS / "mega_pan_tilt.yaml")
+TIMED = api.plan(SPECS / "uno_command_timeout.yaml")
 CHANGING = api.plan(SPECS / "uno_variable_speed.yaml")
 ALWAYS_ENABLED = api.plan(SPECS / "uno_drv8825.yaml")
 BYTES, WORDS, LONGS = (st.integers(0, (1 << bits) - 1) for bits in (8, 16, 32))
@@ -31,6 +32,8 @@ def actions(plan: Plan) -> st.SearchStrategy[Action]:
     motors = st.integers(0, len(plan.motors) - 1)
     update = (LONGS, WORDS, WORDS) if changes else ()
     of_changing = {CallKind.UPDATE_CHECK} if changes else set()
+    if plan.motors[0].command_timeout_ms is not None:
+        of_changing.add(CallKind.KEEP_ALIVE)
     kinds = st.sampled_from(
         sorted(of_changing | {CallKind.HOLD, CallKind.RELEASE, CallKind.READ, CallKind.INIT})
     )
@@ -55,7 +58,7 @@ def scenarios(plan: Plan) -> st.SearchStrategy[Scenario]:
     return st.builds(Scenario, LINES, st.sampled_from(Loop), steps)
 
 
-@given(data=st.data(), plan=st.sampled_from([CONSTANT, CHANGING]))
+@given(data=st.data(), plan=st.sampled_from([CONSTANT, CHANGING, TIMED]))
 def test_a_scenario_is_read_back_as_it_was_written(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject, plan: Plan
 ) -> None:

@@ -48,7 +48,7 @@ def view(motor: MotorPlan) -> FastPwmView:
     timer = motor.timing.timer
     n = timer.number
     elapsed = elapsed_cycles(motor)
-    changes = motor.motion.watches_clock
+    changes = motor.motion.changes_speed
     return FastPwmView(
         number=n,
         struct_prefix="",

@@ -1,22 +1,25 @@
 """
-Constant speed: the step interrupt needs no clock.
+Constant speed: the step interrupt needs no clock but for a command time-out.
 """
 
 from stepgen.plan.isr import Motion
 from stepgen.spec.motions.constant import Constant
 
+_TIMED_CYCLES = 4  # of the handler: IN or LDS, TST and BREQ
+_TIMED_CALL_CYCLES = 20
 
-def plan(spec: Constant) -> Motion:
+
+def plan(spec: Constant, *, timed: bool) -> Motion:
     """
     Return what the motion asks of the step interrupt.
     """
     return Motion(
         kind=spec.kind,
-        watches_clock=False,
-        handler_cycles=0,
-        to_clock_cycles=0,
-        thinking_cycles=0,
+        watches_clock=timed,
+        handler_cycles=_TIMED_CYCLES if timed else 0,
+        to_clock_cycles=_TIMED_CYCLES if timed else 0,
+        thinking_cycles=_TIMED_CYCLES if timed else 0,
         limit_cycles=0,
-        masked_cycles=285,
+        masked_cycles=285 + (_TIMED_CALL_CYCLES if timed else 0),
         setting_cycles=24,
     )

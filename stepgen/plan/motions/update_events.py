@@ -5,19 +5,25 @@ Update events: each step compares the clock with the next moment at which someth
 from stepgen.plan.isr import Motion
 from stepgen.spec.motions.update_events import UpdateEvents
 
+_TIMED_CYCLES = 60
+# With a time-out each step looks at the clock, and the handler once more.
+_TIMED_LOOK_CYCLES = 19
+_TIMED_CALL_CYCLES = 30
 
-def plan(spec: UpdateEvents) -> Motion:
+
+def plan(spec: UpdateEvents, *, timed: bool) -> Motion:
     """
     Return what the motion asks of the step interrupt.
     """
     return Motion(
         kind=spec.kind,
         watches_clock=True,
-        handler_cycles=632,
-        to_clock_cycles=53,
-        thinking_cycles=59,
+        changes_speed=True,
+        handler_cycles=632 + (_TIMED_CYCLES if timed else 0),
+        to_clock_cycles=53 + (_TIMED_LOOK_CYCLES if timed else 0),
+        thinking_cycles=59 + (_TIMED_LOOK_CYCLES if timed else 0),
         limit_cycles=40,
-        masked_cycles=520,
+        masked_cycles=520 + (_TIMED_CALL_CYCLES if timed else 0),
         dumps=spec.debug,
         setting_cycles=170,
         masked_setting_cycles=85,

@@ -86,6 +86,9 @@ def _started(way: Way, motion: Motion) -> Iterator[tuple[str, Any]]:
     yield "backward is backward", after.is_in(REVERSE) == (motion.direction < 0)
     yield "no limit in steps is none", after.is_in(ENDLESS) == (motion.steps_left is None)
     yield "the next interval is that of the speed", way.next_is_chosen
+    if after.is_timed:
+        yield from _hears(way)
+        yield "the last motion is forgotten", z3.Not(after.left_alone)
     if motion.steps_left is not None:
         steps = term(motion.steps_left)
         yield "what is left is the limit", after.left == steps
@@ -152,10 +155,17 @@ def boundary(way: Way) -> Iterator[tuple[str, Any]]:
     itself = way.machine.calls.count(f"{before.motor}Step")
     by_assembly = z3.And(before.entered_count == 0, z3.Not(before.is_in(THINK)))
     yield from position(way, itself + z3.If(by_assembly, NO_STEP + 1, NO_STEP))
+    silent = z3.BoolVal(val=False)
+    if before.is_timed:
+        silent = z3.And(before.is_in(RUNNING), before.patience <= 0)
+        ended = z3.And(z3.Not(after.is_in(RUNNING)), after.left_alone)
+        yield "a command time-out ends the motion", z3.Implies(silent, ended)
+        same = after.left_alone == before.left_alone
+        yield "nothing else looks like one", z3.Implies(z3.Not(silent), same)
     if before.has("eventAt"):
-        yield from _wakes(way)
+        yield from _wakes(way, silent)
         return
-    running, limited = before.is_in(RUNNING), before.is_in(THINK)
+    running, limited = z3.And(before.is_in(RUNNING), z3.Not(silent)), before.is_in(THINK)
     ended = z3.Not(after.is_in(RUNNING))
     until = before.to_millis_end
     yield (
@@ -168,7 +178,7 @@ def boundary(way: Way) -> Iterator[tuple[str, Any]]:
     )
 
 
-def _wakes(way: Way) -> Iterator[tuple[str, Any]]:
+def _wakes(way: Way, silent: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
     before, after = way.before, way.after
     looks = z3.And(after.is_in(RUNNING), after.is_in(CLOCKED))
     ahead = wide(after.of("wake") - low_millis(after))
@@ -176,6 +186,11 @@ def _wakes(way: Way) -> Iterator[tuple[str, Any]]:
         "the interrupt wakes up within the range of its comparison",
         z3.Implies(looks, ahead <= _FAR),
     )
+    if before.is_timed:
+        yield (
+            "it wakes up before the command time-out ends",
+            z3.Implies(looks, ahead <= before.patience),
+        )
     yield (
         "it wakes up before a time limit ends",
         z3.Implies(
@@ -190,7 +205,12 @@ def _wakes(way: Way) -> Iterator[tuple[str, Any]]:
     yield (
         "a time limit ends when it has passed",
         z3.Implies(
-            z3.And(before.is_in(RUNNING), before.is_in(LIMITED), before.entered_count != 0),
+            z3.And(
+                before.is_in(RUNNING),
+                before.is_in(LIMITED),
+                before.entered_count != 0,
+                z3.Not(silent),
+            ),
             after.is_in(RUNNING) == (millis_left(before) > 0),
         ),
     )
@@ -288,6 +308,20 @@ def read_missed(way: Way) -> Iterator[tuple[str, Any]]:
     yield from position(way, NO_STEP)
 
 
+def _hears(way: Way) -> Iterator[tuple[str, Any]]:
+    timeout = way.library.timeouts[way.before.motor]
+    yield "the command time-out begins anew", way.after.patience == timeout
+
+
+def keep_alive(way: Way) -> Iterator[tuple[str, Any]]:
+    """
+    Yield what must hold after ``...KeepAlive``.
+    """
+    yield "nothing of the motion changes", same_but_status(way)
+    yield from _hears(way)
+    yield from position(way, NO_STEP)
+
+
 def keeps_position(way: Way) -> Iterator[tuple[str, Any]]:
     """
     Yield what must hold of a call that makes no step.
@@ -304,6 +338,8 @@ CLAIMS: dict[str, Callable[[Way], Iterator[tuple[str, Any]]]] = {
     "ReadPosition": read_position,
     "ReadNanometres": read_nanometres,
     "ReadMissed": read_missed,
+    "KeepAlive": keep_alive,
+    "TimedOut": keeps_position,
     "Hold": keeps_position,
     "Release": keeps_position,
     "Update": update,

@@ -41,6 +41,7 @@ class Library:
         max_top: MOTOR_MAX_TOP.
         units: What makes steps of turns and micrometres: the names of those.
         steps_per_mm: The steps in a millimetre of the motors that have metric units.
+        timeouts: The command time-outs of the motors that have one, in milliseconds.
     """
 
     source: Source
@@ -49,6 +50,7 @@ class Library:
     max_top: int
     units: tuple[str, ...]
     steps_per_mm: dict[str, Fraction]
+    timeouts: dict[str, int]
 
     @property
     def chooses(self) -> list[str]:
@@ -91,6 +93,11 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
             motor.name: motor.steps_per_mm
             for motor in plan.motors
             if motor.steps_per_mm is not None
+        },
+        timeouts={
+            motor.name: motor.command_timeout_ms
+            for motor in plan.motors
+            if motor.command_timeout_ms is not None
         },
     )
 

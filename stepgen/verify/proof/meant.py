@@ -49,11 +49,19 @@ MEANT = {
     "motion.lapsHigh = (laps - 1) >> 8;": _LAPS,
     "if (--motion.laps) return;": _LAPS,
     "uint16_t wait = millis & 0x3FFF;": _LOW_BYTES,
+    "motorDeadline = static_cast<uint16_t>(timer0_millis) + motorTimeout;": _TIMES,
+    "return static_cast<int16_t>(motorDeadline - static_cast<uint16_t>(timer0_millis));": _TIMES,
     # Intervals of the timing compare.
     "const uint8_t rest = ticks;": _LOW_BYTES,
     "return {first, static_cast<uint8_t>(rest - first), static_cast<uint8_t>(laps), "
     "static_cast<uint8_t>((laps - 1) >> 8)};": _PARTS,
 }
+
+
+_NAMES = (
+    *("Position", "ReadPosition", "Show", "EventClock", "Count", "Motion"),
+    *("Deadline", "Timeout"),
+)
 
 
 def is_meant(text: str, motors: tuple[str, ...], used: set[str]) -> bool:
@@ -72,6 +80,6 @@ def for_motor(text: str, motors: tuple[str, ...]) -> str:
     Return *text* of a library of *motors* as it were for one called ``motor``.
     """
     for motor in motors:
-        for after in ("Position", "ReadPosition", "Show", "EventClock", "Count", "Motion"):
+        for after in _NAMES:
             text = re.sub(rf"\b{motor}{after}\b", f"motor{after}", text)
     return text

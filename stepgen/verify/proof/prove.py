@@ -176,9 +176,12 @@ class _Run:
         Return what was before the step interrupt that goes on to its rare ways as *entered*.
         """
         count, place = entered.count, entered.count_place
-        looks = entered.is_in(CLOCKED) if entered.has("eventAt") else z3.BoolVal(val=False)
+        looks = z3.And(entered.is_in(CLOCKED), _by_the_clock(entered))
         self.paths.assume(z3.Or(count == 0, looks))
         self.paths.assume(z3.Or(entered.is_in(RUNNING), entered.is_in(COAST)))
+        if entered.is_timed:  # each step has looked, and what it looks for is proven to be no later
+            runs = z3.And(entered.is_in(RUNNING), count == 0)
+            self.paths.assume(z3.Implies(runs, entered.patience > 0))
         values = {**entered.values, place: z3.If(count == 0, z3.BitVecVal(1, 8), count)}
         return replace(entered, values=values, entered_count=count)
 
@@ -240,3 +243,12 @@ class _Run:
 
     def _show(self, says: str, claim: Any) -> None:  # noqa: ANN401 - z3 has no types
         self.paths.prove(claim, says, self.name)
+
+
+def _by_the_clock(entered: State) -> Any:  # noqa: ANN401 - z3 has no types
+    """
+    Tell whether the step interrupt can go on in its rare ways because of the clock.
+    """
+    if entered.has("eventAt"):
+        return z3.BoolVal(val=True)
+    return entered.patience <= 0 if entered.is_timed else z3.BoolVal(val=False)

@@ -15,8 +15,8 @@ from stepgen.verify.proof.source import Source
 THINK, COAST, ENDLESS, REVERSE, RUNNING, CLOCKED, LIMITED = (1 << bit for bit in range(7))
 """The bits of ``mode``: kThink and so on."""
 
-LAPS = CLOCKED
-"""The bit kLaps of a motion at constant speed, which never looks at the clock by `CLOCKED`."""
+LAPS = LIMITED
+"""The bit kLaps of a motion at constant speed."""
 
 UPDATE_STEPS, IRQ_TIMING, SPEED_VARIABLE = 0x08, 0x10, 0x40
 
@@ -130,6 +130,28 @@ class State:
         return wide_signed(until) + z3.If(self.is_in(LAPS), _LAP_MILLIS * more, 0)
 
     @property
+    def is_timed(self) -> bool:
+        """
+        Tell whether the motor has a command time-out.
+        """
+        return (f"{self.motor}Deadline",) in self.values
+
+    @property
+    def patience(self) -> Any:  # noqa: ANN401
+        """
+        Return the milliseconds until the command time-out ends, 0 or less after it.
+        """
+        deadline = self.values[(f"{self.motor}Deadline",)]
+        return wide_signed(deadline - z3.Extract(15, 0, self.values[CLOCK]))
+
+    @property
+    def left_alone(self) -> Any:  # noqa: ANN401
+        """
+        Tell whether the command time-out ended the last motion.
+        """
+        return self.values[(f"{self.motor}LeftAlone",)] != 0
+
+    @property
     def to_event(self) -> Any:  # noqa: ANN401
         """
         Return the steps or milliseconds until the next update event, negative if it is overdue.
@@ -154,6 +176,11 @@ def invariant(state: State) -> Claims:
             state.steps_counted, state.left < 1 << 32
         ),
     }
+    if state.is_timed:
+        looks = z3.Implies(state.is_in(RUNNING), state.is_in(CLOCKED))
+        claims["a motor with a command time-out looks at the clock while it runs"] = looks
+        coasts = z3.Not(z3.And(_coasts(state), state.is_in(CLOCKED)))
+        claims["it does not while it coasts"] = coasts
     claims |= _of_ring(state) | _of_coasting(state)
     claims |= _of_fast_pwm(state) if state.has("next", "top") else _of_compare(state)
     return claims | (_of_events(state) if state.has("eventAt") else _of_constant(state))
