@@ -57,6 +57,9 @@ _STATUS_BITS = (
     _Name("MOTOR_STAT_SPIN_FIXED", 0x40, "running at a speed that stays"),
     _Name("MOTOR_STAT_MISSED", 0x80, "a step came too late; a start clears it"),
 )
+CALL_CYCLES = 1000
+"""The longest that an interrupt of the sketch can take that does nothing but call a function."""
+
 _CODES = (
     _Name("MOTOR_ERROR_TOO_FAST", -1, "below MOTOR_MIN_TOP"),
     _Name("MOTOR_ERROR_TOO_SLOW", -2, "above MOTOR_MAX_TOP"),

@@ -3,6 +3,7 @@ Sentences about a plan, for comments and documents: what is wired where, and who
 """
 
 from stepgen.devices import Board
+from stepgen.library.api_view import CALL_CYCLES, dump_name
 from stepgen.library.sharing import Need, sharing_rules
 from stepgen.library.text import comment_lines, frequency, listed
 from stepgen.plan.model import MotorPlan, Plan
@@ -90,6 +91,28 @@ def _pwm(motor: MotorPlan, board: Board) -> str:
     pins = [board.find_pin(bit.name) for bit in bits]
     return listed(
         [pin.label if pin else bit.name for pin, bit in zip(pins, bits, strict=True)], "or"
+    )
+
+
+def calls_comment(plan: Plan) -> tuple[str, ...]:
+    """
+    Return from where the functions may be called, as lines of a comment.
+    """
+    changing = [motor for motor in plan.motors if motor.motion.changes_speed]
+    callbacks = (
+        f" ({listed([f'{motor.name}TimerUpdateCheck()' for motor in changing])} and the callbacks "
+        "that it makes: longer, by those)"
+        if changing
+        else ""
+    )
+    dumps = [motor for motor in changing if motor.motion.dumps]
+    names = listed([f"{dump_name(motor)}()" for motor in dumps]) if dumps else ""
+    prints = f" The exception is {names}: it prints, and waits for Serial." if dumps else ""
+    return comment_lines(
+        "Every function may be called from setup() and loop(), from a callback, and from an "
+        "interrupt of the sketch, also in the middle of another call. Step interrupts wait for an "
+        f"interrupt of the sketch: a call takes at most {CALL_CYCLES} clocks there{callbacks}, and "
+        f"counts as a stretch with interrupts off.{prints}"
     )
 
 

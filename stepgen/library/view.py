@@ -16,7 +16,7 @@ from stepgen.library.api_view import (
 from stepgen.library.examples_view import ExamplesView, examples_view
 from stepgen.library.hot_view import CLOCK_BIT, THINK_BIT
 from stepgen.library.motor_view import MotorView, Named, motor_view
-from stepgen.library.prose import paragraph, takes, title
+from stepgen.library.prose import calls_comment, paragraph, takes, title
 from stepgen.library.rates_view import HeldRow, held_rows, lateness, speeds
 from stepgen.library.sharing import needs_comment
 from stepgen.library.text import c_comment, frequency
@@ -63,6 +63,7 @@ class LibraryView:
     status_bits: tuple[Definition, ...]
     codes: tuple[Definition, ...]
     constants: tuple[Named, ...]
+    calls_comment: tuple[str, ...]
     motion_names: tuple[str, ...]
     motion_structs: tuple[MotionStruct, ...]
     think_bit: int
@@ -112,6 +113,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         status_bits=status_bits(plan),
         codes=codes(plan),
         constants=_constants(plan),
+        calls_comment=calls_comment(plan),
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
         motion_structs=_motion_structs(motors),
         think_bit=THINK_BIT,

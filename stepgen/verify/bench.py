@@ -13,12 +13,14 @@ from stepgen.plan.model import Plan
 from stepgen.verify.events import Events
 from stepgen.verify.simulators import SIMAVR, Simulator
 
-_MAILBOX = Struct("<BBBBIIIHHHbBiHB")
+_MAILBOX = Struct("<BBBBIIIHHHbBiHBBB")
 _DELAY = Struct("<H")
 _LOOP_OFFSET = 2
 _DELAY_OFFSET = 20
 _NO_CALL = 11  # the sketch goes through all of a call, but calls nothing
 _MARK_BEGIN, _MARK_END, _MARK_READY, _MARK_MET = 1, 2, 3, 4
+_MARK_WITHIN, _MARK_WITHIN_END = 5, 6
+_WITHIN_OFFSET = 31
 # So long before its moment an exact call is handed over: more than the sketch's loop takes.
 APPROACH_CYCLES = 400
 _SETUP_CYCLES = 2_000_000
@@ -38,6 +40,20 @@ class Loop(IntEnum):
     BUSY = 1
     HOSTILE = 2
     EXACT = 3
+
+
+class Context(IntEnum):
+    """
+    Where the sketch makes a call: in its loop, in a callback of the motor, or in an interrupt.
+
+    For a call in a callback the loop calls the motor's ``...TimerUpdateCheck``; where no callback
+    is due, it is not made. The interrupt is compare match A of timer 0, as an example of one that
+    a sketch has.
+    """
+
+    LOOP = 0
+    CALLBACK = 1
+    INTERRUPT = 2
 
 
 class CallKind(IntEnum):
@@ -84,6 +100,7 @@ class Call:
     modification: int = 0
     interval: int = 0
     count: int = 0
+    context: Context = field(default=Context.LOOP, kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -178,16 +195,33 @@ class Bench:
             self._delay(self._due_cycle - now - self._lead_cycles)
         begin = self._run_to_mark(_MARK_BEGIN, call)
         self.machine.fine = True
-        end = self._run_to_mark(_MARK_END, call)
+        made = call.context is Context.LOOP or self._go_within(call, begin)
+        begin = begin if call.context is Context.LOOP else self.machine.cycle
+        if made:
+            last = _MARK_END if call.context is Context.LOOP else _MARK_WITHIN_END
+            end = self._run_to_mark(last, call)
         self.machine.fine = False
         self._run_until_free(call)
-        *_, result, status, position, missed, timed_out = _MAILBOX.unpack(
+        if made:
+            self.answers.append(self._answer(call, begin, end))
+        self._due_cycle = self.answers[-1].end_cycle
+        return self.answers[-1]
+
+    def _go_within(self, call: Call, begin: int) -> bool:
+        """
+        Run until a callback or an interrupt makes *call*; return False if no callback was due.
+        """
+        inside = self._run_to_mark(_MARK_WITHIN, call)
+        if call.context is not Context.CALLBACK:
+            return True
+        self.answers.append(Answer(Call(CallKind.UPDATE_CHECK, call.motor), begin, inside, 0, 0, 0))
+        return not self.machine.read_ram(self._mailbox + _WITHIN_OFFSET, 1)[0]
+
+    def _answer(self, call: Call, begin: int, end: int) -> Answer:
+        *_, result, status, position, missed, timed_out, _, _ = _MAILBOX.unpack(
             self.machine.read_ram(self._mailbox, _MAILBOX.size)
         )
-        answer = Answer(call, begin, end, result, status, position, missed, timed_out)
-        self.answers.append(answer)
-        self._due_cycle = end
-        return answer
+        return Answer(call, begin, end, result, status, position, missed, timed_out)
 
     def events(self) -> Events:
         """
@@ -233,7 +267,8 @@ def mail(call: Call, loop: Loop) -> bytes:
     """
     update = (call.modification, call.interval, call.count)
     arguments = (call.kind, call.motor, loop, call.control, call.top, call.limit, *update)
-    return _MAILBOX.pack(*arguments, 0, 0, 0, 0, 0, 0)
+    within = 0 if call.context is Context.LOOP else call.kind
+    return _MAILBOX.pack(*arguments, 0, 0, 0, 0, 0, 0, within, call.context)
 
 
 def watched_registers(plan: Plan) -> list[int]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from stepgen.plan.model import Plan
 from stepgen.spec import LoadedSpec
-from stepgen.verify.bench import Answer, Bench, CallKind, Loop
+from stepgen.verify.bench import Answer, Bench, CallKind, Context, Loop
 from stepgen.verify.compare import Comparison, Scene, compare
 from stepgen.verify.scenarios import Scenario, Wait
 from stepgen.verify.shared_pins import compare_shared
@@ -106,7 +106,7 @@ def is_asleep(scenario: Scenario) -> bool:
 def _longest_mask(trace: Trace, answers: tuple[Answer, ...]) -> int:
     longest = 0
     for answer in answers:
-        if answer.call.kind is CallKind.HOLD_UP:
+        if answer.call.kind is CallKind.HOLD_UP or answer.call.context is Context.INTERRUPT:
             continue
         which = 0
         while section := trace.commit(answer.begin_cycle, answer.end_cycle, which):

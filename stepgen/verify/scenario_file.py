@@ -17,7 +17,7 @@ from stepgen.errors import Fault, StepgenError
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.reference.contract import ALL_CONTROL_BITS, CONTROL_BITS, Control
 from stepgen.spec.load import load_model
-from stepgen.verify.bench import SWITCHING, Call, CallKind, Loop
+from stepgen.verify.bench import SWITCHING, Call, CallKind, Context, Loop
 from stepgen.verify.scenario_model import (
     UPDATE_FIELDS,
     CallStep,
@@ -112,19 +112,29 @@ def _lacks(
     step: CallStep, motor: MotorPlan, bits: Mapping[str, int]
 ) -> Iterator[tuple[tuple[str | int, ...], str]]:
     """
-    Yield what *motor* has not: a switch for its current, or update events and what is theirs.
+    Yield what *motor* has not: a switch for its current, a time-out, or update events.
     """
     if step.kind in SWITCHING and not motor.switches_current:
         yield ("call",), f"the motor {motor.name} has no ENABLE to switch; leave this out"
     if step.kind is CallKind.KEEP_ALIVE and motor.command_timeout_ms is None:
         way_out = "give it `command_timeout_ms`, or leave this out"
         yield ("call",), f"the motor {motor.name} has no command time-out; {way_out}"
+    if _control_bits(motor) != ALL_CONTROL_BITS:
+        yield from _lacks_events(step, motor, bits)
+
+
+def _lacks_events(
+    step: CallStep, motor: MotorPlan, bits: Mapping[str, int]
+) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """
+    Yield what *motor*, which has no update events, cannot do.
+    """
     known = _control_bits(motor)
-    if known == ALL_CONTROL_BITS:
-        return
     reason = f"the motor {motor.name} has no update events; {_WAY_OUT}"
     if step.kind in _OF_UPDATE_EVENTS:
         yield ("call",), reason
+    if step.context == "callback":
+        yield ("context",), reason
     if step.kind is CallKind.SET_SPEED:
         for index, bit in enumerate(step.bits):
             if bits.get(bit, 0) & ~known:
@@ -148,6 +158,7 @@ def _call(step: CallStep, plan: Plan) -> Call:
         step.modification,
         step.interval,
         step.count,
+        context=Context[step.context.upper()],
     )
 
 
@@ -167,6 +178,8 @@ def _step(action: Action, plan: Plan) -> CommentedMap:
             value = plan.motors[action.motor].name if len(plan.motors) > 1 else None
         elif field == "control":
             value = _control(action, plan)
+        elif field == "context":
+            value = action.context.name.lower() if action.context else None
         if value:
             step[field] = value
     return step

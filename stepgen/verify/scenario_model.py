@@ -20,8 +20,8 @@ _ONE_LINE = r"^[^\x00-\x1f\x7f-\x9f]*$"
 # Which fields each call has, in their order.
 _FIELDS: Mapping[CallKind, tuple[str, ...]] = MappingProxyType(
     {
-        CallKind.SET_SPEED: ("motor", "control", "top", "limit", *UPDATE_FIELDS),
-        CallKind.CALLBACKS: ("motor", "control"),
+        CallKind.SET_SPEED: ("motor", "control", "top", "limit", *UPDATE_FIELDS, "context"),
+        CallKind.CALLBACKS: ("motor", "control", "context"),
         CallKind.HOLD_UP: ("top",),
         CallKind.DIVIDE_CLOCK: ("control",),
         CallKind.TOP_PER_SECOND: ("top",),
@@ -87,6 +87,7 @@ class CallStep(SpecModel):
     modification: Annotated[int, Field(ge=0, le=0xFFFF_FFFF)] = 0
     interval: Annotated[int, Field(ge=0, le=0xFFFF)] = 0
     count: Annotated[int, Field(ge=0, le=0xFFFF)] = 0
+    context: Literal["loop", "callback", "interrupt"] = "loop"
 
     @property
     def kind(self) -> CallKind:
@@ -170,4 +171,4 @@ def fields_of(kind: CallKind) -> tuple[str, ...]:
     """
     Return which fields the call *kind* has.
     """
-    return _FIELDS.get(kind, ("motor",))
+    return _FIELDS.get(kind, ("motor", "context"))

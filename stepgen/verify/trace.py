@@ -12,6 +12,7 @@ from stepgen.reference.core_clock import millis_after
 from stepgen.verify.events import Events, Kind
 
 _CLOCK_SELECT = 0b111
+_SKETCH_VECTOR = "TIMER0_COMPA_vect"  # where the bench makes the calls of `Context.INTERRUPT`
 
 
 @dataclass(frozen=True)
@@ -80,6 +81,11 @@ class Trace:
         exits = self._of(Kind.ISR_EXIT)
         self._isr_exits = exits["cycle"].tolist()
         self._isr_entries = exits["since"].tolist()
+        sketch = self.mcu.vector(_SKETCH_VECTOR).number
+        runs = zip(self._of(Kind.ISR_ENTER, sketch), self._of(Kind.ISR_EXIT, sketch), strict=False)
+        sections = [(int(enter["cycle"]), int(leave["cycle"])) for enter, leave in runs]
+        self._sketch_entries = [enter for enter, _ in sections]
+        self._sketch_exits = [leave for _, leave in sections]
         self._port_cycles = [state.cycle for state in self.ports]
         # For each port from when on it holds what; 0 from reset.
         self._held: dict[str, tuple[list[int], list[int]]] = {
@@ -161,7 +167,11 @@ class Trace:
     def commit(self, begin: int, end: int, which: int = 0) -> tuple[int, int] | None:
         """
         Return first and last cycle of the section with interrupts off, number *which*, of a call.
+
+        For a call within an interrupt of the sketch that is always the whole interrupt.
         """
+        if within := self._interrupt_of_sketch(begin):
+            return within
         low = bisect_left(self.masked, begin)
         if low + which >= len(self.masked) or self.masked[low + which] > end:
             return None
@@ -173,11 +183,22 @@ class Trace:
         """
         Return first and last cycle of the section with interrupts off around *cycle*, if any.
         """
+        if within := self._interrupt_of_sketch(cycle):
+            return within
         place = bisect_right(self.masked, cycle) - 1
         if place < 0:
             return None
         section = self.commit(self.masked[place], cycle)
         return section if section and section[1] >= cycle else None
+
+    def _interrupt_of_sketch(self, cycle: int) -> tuple[int, int] | None:
+        """
+        Return first and last cycle of the sketch's interrupt that runs at *cycle*, if one does.
+        """
+        place = bisect_right(self._sketch_entries, cycle) - 1
+        if place < 0 or cycle > self._sketch_exits[place]:
+            return None
+        return self._sketch_entries[place], self._sketch_exits[place]
 
     def served_from(self, cycle: int) -> int:
         """

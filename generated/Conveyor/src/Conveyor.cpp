@@ -346,7 +346,7 @@ extern "C" void __vector_belt_boundary() __attribute__((signal, used, externally
 void __vector_belt_boundary() {
   auto &motion = beltMotion;
   const uint8_t mode = motion.mode;
-  if (GPIOR1) {  // nobody has said a word for too long: the step that is due is not made
+  if (GPIOR1) {  // silent for too long: no step is made
     beltCoilsOff();
     beltHalt(mode);
     beltLeftAlone = 1;

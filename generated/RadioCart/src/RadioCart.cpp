@@ -426,7 +426,7 @@ void __vector_left_boundary() {
   uint16_t wait = leftMillisLeft();
   uint8_t row = motion.mode & kLimited ? 10 : 0;
   if (count) {  // the clock has come to that moment; no step is made yet
-    if (leftPatience() <= 0) {  // nobody has said a word for too long: the step that is due is not made
+    if (leftPatience() <= 0) {  // silent for too long: no step is made
       leftHalt(0);
       leftLeftAlone = 1;
       return;
@@ -865,7 +865,7 @@ extern "C" void __vector_right_boundary() __attribute__((signal, used, externall
 void __vector_right_boundary() {
   auto &motion = rightMotion;
   const uint8_t mode = motion.mode;
-  if (rightCount) {  // nobody has said a word for too long: the step that is due is not made
+  if (rightCount) {  // silent for too long: no step is made
     rightCoilsOff();
     rightHalt(mode);
     rightLeftAlone = 1;

@@ -56,12 +56,22 @@ class WorstCase:
         Raises:
             StepgenError: It has no bound; says which instruction is to blame.
         """
-        vector_bytes = 4 if self._mcu.flash_bytes > _NEAR_FLASH_BYTES else 2
-        start = self._mcu.vector(vector).number * vector_bytes
+        start = self._start_of(vector)
         way = Search(self._graph, self._memory).longest(start, self._graph.reach(start))
         response = self._core.response_cycles
         path = (f"response: {response} cycles", *self._describe(way.lines))
         return Bound(response + way.cycles, stack_bytes(self._graph, start), path)
+
+    def interrupt_cycles(self, vector: str) -> int:
+        """
+        Return the longest that the interrupt *vector* takes, whatever it does with the stack.
+
+        Raises:
+            StepgenError: It has no bound; says which instruction is to blame.
+        """
+        start = self._start_of(vector)
+        way = Search(self._graph, self._memory).longest(start, self._graph.reach(start))
+        return self._core.response_cycles + way.cycles
 
     def masked(self, source: str) -> Bound:
         """
@@ -72,6 +82,10 @@ class WorstCase:
         """
         way = MaskedSections(self._program, self._core, self._memory, source).longest()
         return Bound(way.cycles, 0, tuple(self._describe(way.lines)))
+
+    def _start_of(self, vector: str) -> int:
+        vector_bytes = 4 if self._mcu.flash_bytes > _NEAR_FLASH_BYTES else 2
+        return self._mcu.vector(vector).number * vector_bytes
 
     def _describe(self, lines: Sequence[Line]) -> Iterator[str]:
         following = (*lines[1:], None)
