@@ -140,7 +140,9 @@ def measure(elf: Path, tools: Toolchain) -> Build:
         limit = int(properties[limit_key])
         if used > limit:
             raise StepgenError.of(
-                f"the program needs {used} bytes of {what}, {tools.target.fqbn} has {limit}",
+                f"{elf.stem} needs {used} bytes of {what} with its library, and "
+                f"{tools.target.fqbn} has {limit}; give the library fewer motors, "
+                "`motion: constant` or shorter tables, or take a board with more memory",
                 place=str(elf),
             )
     return Build(elf, flash_bytes, ram_bytes)

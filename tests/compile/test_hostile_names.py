@@ -13,9 +13,7 @@ import pytest
 from stepgen import api
 from stepgen.devices import find_board
 from stepgen.spec.model import Library
-from stepgen.verify.firmware import build_firmware
-from stepgen.verify.toolchain import default_compiler
-from tests.fuzz.specs import CODE, to_yaml
+from tests.fuzz.specs import CODE
 
 CORE = Path("/usr/share/arduino/hardware/arduino/avr")
 INCLUDES = (CORE / "cores/arduino", CORE / "variants/mega")
@@ -129,46 +127,3 @@ def test_no_library_takes_the_place_of_a_header() -> None:
     for name in sorted(names):
         with pytest.raises(ValueError, match="is a header of the Arduino core or of C"):
             raise AssertionError(Library(name=name))
-
-
-@pytest.mark.parametrize(
-    ("board", "timings", "flash_bytes", "ram_bytes"),
-    # ATmega328P: 32 KB less 2 KB for the boot loader, and 2 KB (datasheet, 1). ATmega2560: 256 KB
-    # less 8 KB, and 8 KB.
-    [
-        ("uno", ["fast-pwm", "compare"], 30_720, 2048),
-        ("mega", ["fast-pwm"] * 4, 253_952, 8192),
-    ],
-)
-def test_the_largest_libraries_fit(
-    tmp_path: Path, board: str, timings: list[str], flash_bytes: int, ram_bytes: int
-) -> None:
-    """
-    As many motors as there are timers, with all that they can have, leave most of the chip free.
-    """
-    numbers = range(22, 38) if board == "mega" else (2, 3, 4, 5, 8, 9, 10, 11)
-    pins = [f"D{number}" for number in numbers]
-    table = ["1000", "0100", "0010", "0001"] * 8
-    # Beside timer 2 nobody may have update events.
-    motion = "constant" if "compare" in timings else {"kind": "update-events", "debug": True}
-    motors = {
-        f"m{index}": {
-            "drive": {
-                "kind": "four-wire",
-                "pins": pins[4 * index : 4 * index + 4],
-                "sequence": table,
-            },
-            "timing": timing,
-            "motion": motion,
-            "steps_per_turn": {"full_steps": 32, "gear": "25792/405"},
-        }
-        for index, timing in enumerate(timings)
-    }
-    spec = tmp_path / "spec.yaml"
-    spec.write_bytes(to_yaml({"library": "Largest", "board": board, "motors": motors}))
-    loaded, plan = api.load(spec), api.plan(spec)
-
-    firmware = build_firmware(plan, loaded.document.text, default_compiler())
-
-    assert firmware.flash_bytes < flash_bytes // 2
-    assert firmware.ram_bytes < ram_bytes // 2
