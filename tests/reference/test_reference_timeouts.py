@@ -13,6 +13,7 @@ from stepgen.reference.integer import MotorModel
 from stepgen.reference.prediction import predict
 from stepgen.reference.sequences import coils_off, phases
 from stepgen.reference.stimuli import (
+    CallBack,
     ClockOn,
     Hold,
     Init,
@@ -159,7 +160,7 @@ def test_a_time_out_is_no_end_point_that_is_called_back() -> None:
     facts = MotorFacts(PHASES, OFF, 640, "hold", "update-events", command_timeout_millis=20)
     stimuli = (SetSpeed(50, 0x80, 1000), ClockOn(100, 1, 0), MillisTick(1500, 20))
 
-    prediction = predict(facts, [*stimuli, UpdateCheck(5000)], 9000)
+    prediction = predict(facts, [*stimuli, UpdateCheck(5000), CallBack(5050)], 9000)
 
     assert prediction.callbacks == ()
     assert prediction.status == Status.REACHED

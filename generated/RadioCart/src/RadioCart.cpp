@@ -713,8 +713,8 @@ SHARED void rightEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t rightElapsed[] PROGMEM = {
-    169, 21, 2, 0, 0,
-    182, 22, 2, 0, 0,
+    172, 21, 2, 0, 0,
+    190, 23, 2, 0, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.
