@@ -91,6 +91,16 @@ class ConsoleRow:
 
 
 @dataclass(frozen=True)
+class KeptAlive:
+    """
+    A motor with a command time-out, which the loop has to keep alive, and why.
+    """
+
+    name: str
+    comment: str
+
+
+@dataclass(frozen=True)
 class ExamplesView:
     """
     All examples of a library, and what their templates need.
@@ -111,6 +121,7 @@ class ExamplesView:
     coils: tuple[Coils, ...]
     neighbours: tuple[Neighbour, ...]
     together_comment: tuple[str, ...]
+    kept_alive: tuple[KeptAlive, ...]
 
 
 def examples_view(plan: Plan) -> ExamplesView:
@@ -154,6 +165,11 @@ def examples_view(plan: Plan) -> ExamplesView:
         ramped_names=listed(list(ramped)) if ramped else "",
         coils=coils,
         neighbours=beside,
+        kept_alive=tuple(
+            KeptAlive(motor.name, f"or it stops after {motor.command_timeout_ms} ms")
+            for motor in plan.motors
+            if motor.command_timeout_ms is not None
+        ),
         together_comment=comment_lines(
             f"{names} beside {beside_names}, which the spec names in `uses`: ten times a second "
             f"the sketch does something small with {'each' if beside[1:] else 'it'}. "

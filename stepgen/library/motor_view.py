@@ -106,6 +106,7 @@ class MotorView:
     example_speed_sps: int
     turn_steps: str
     turn_text: str
+    loop_text: str
 
 
 def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
@@ -161,6 +162,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         example_speed_sps=example_speed_sps(plan),
         turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",
         turn_text="One turn" if motor.steps_per_turn else "200 steps",
+        loop_text=_loop_text(motor),
     )
 
 
@@ -185,6 +187,12 @@ def _turns(motor: MotorPlan) -> Turns | None:
         f"static_cast<uint32_t>((turns * {steps.numerator}ULL + {half}) / {steps.denominator})",
         f"Steps for whole turns, rounded: {float(steps):.6g} in each{limit}.",
     )
+
+
+def _loop_text(motor: MotorPlan) -> str:
+    if motor.command_timeout_ms is None:
+        return "{}  // the motor turns by itself"
+    return f"{{ {motor.name}KeepAlive(); }}  // or it stops after {motor.command_timeout_ms} ms"
 
 
 def _timeout(motor: MotorPlan) -> Timeout | None:

@@ -2,6 +2,7 @@
 The example sketch on a simulated chip: no mailbox, just the program that users see first.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 from stepgen.plan.model import Plan
@@ -36,7 +37,7 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
         until = machine.cycle
         findings = []
         results = []
-        motors = subjects(loaded, plan, elf)
+        motors = [_kept_alive(motor) for motor in subjects(loaded, plan, elf)]
         for index, subject in enumerate(motors):
             answers = _calls(trace, subject, index, plan)
             if not answers:
@@ -48,6 +49,13 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
             results.append(result)
         findings.extend(compare_shared(motors, results, Scene(trace, (), plan, until)))
     return tuple(findings)
+
+
+def _kept_alive(subject: Subject) -> Subject:
+    """
+    Return *subject* as one without a command time-out: the example's loop never lets it end.
+    """
+    return replace(subject, facts=replace(subject.facts, command_timeout_millis=None))
 
 
 def _calls(trace: Trace, subject: Subject, index: int, plan: Plan) -> list[Answer]:

@@ -83,7 +83,9 @@ constexpr uint32_t xStepsForTurns(uint16_t turns) {
   return turns * 3200UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void xShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -139,7 +141,9 @@ constexpr uint32_t yStepsForTurns(uint16_t turns) {
   return turns * 1600UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void yShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -80,7 +80,9 @@ constexpr uint32_t nearStepsForTurns(uint16_t turns) {
   return turns * 200UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void nearShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -123,7 +125,9 @@ int8_t nearRelease();
 // The sketch may change other bits of port K with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 4 belongs to the motor: no analogWrite() on D6, D7 or D8.
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void farShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -79,7 +79,9 @@ constexpr uint32_t panStepsForTurns(uint16_t turns) {
   return static_cast<uint32_t>((turns * 1650688ULL + 202) / 405);
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void panShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -131,7 +133,9 @@ constexpr uint32_t tiltStepsForTurns(uint16_t turns) {
   return turns * 200UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void tiltShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

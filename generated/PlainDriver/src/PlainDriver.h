@@ -82,7 +82,9 @@ constexpr uint32_t motorStepsForTurns(uint16_t turns) {
   return turns * 6400UL;
 }
 
-// Makes the pins outputs, at position 0. Call it once, from setup().
+// Makes the pins outputs, at position 0. Call it once, from setup(). Until then, and from any reset
+// on, they are inputs and drive nothing: what must not float meanwhile, such as an ENABLE, needs a
+// resistor.
 void motorShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

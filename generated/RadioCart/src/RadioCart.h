@@ -85,7 +85,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of port K with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D11, D12 or D13.
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void leftShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -161,7 +163,9 @@ int8_t leftRelease();
 // inside ATOMIC_BLOCK.
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void rightShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -81,7 +81,9 @@ uint32_t zTimerCalcNanometresPerSecond(uint32_t speed);
 // wraps at 32 bits: 2147.48 mm either way.
 int32_t zReadNanometres();
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void zShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -95,7 +95,9 @@ constexpr uint32_t lowerStepsForTurns(uint16_t turns) {
   return turns * 200UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void lowerShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -149,7 +151,9 @@ constexpr uint32_t upperStepsForTurns(uint16_t turns) {
   return turns * 200UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void upperShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -87,7 +87,9 @@ constexpr uint32_t leftStepsForTurns(uint16_t turns) {
   return turns * 200UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void leftShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -136,7 +138,9 @@ int8_t leftRelease();
 // inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void rightShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -142,6 +142,7 @@ void setup() {
 }
 
 void loop() {
+  beltKeepAlive();  // or it stops after 500 ms
   if (Serial.availableForWrite() < kRoom) return;  // the last line is still on its way
   if (helpLeft) {
     printHelpLine();

@@ -7,4 +7,7 @@ void setup() {
   beltSetSpeed(MOTOR_CTRL_DRV_EN, motorTimerCalcPerSecond(200));  // steps/s
 }
 
-void loop() {}  // free for anything: the timer makes the steps
+void loop() {
+  beltKeepAlive();  // or it stops after 500 ms
+  // Free for anything that is soon over: the timer makes the steps.
+}

@@ -18,6 +18,7 @@ static void turnBelt() {
 }
 
 void loop() {
+  beltKeepAlive();  // or it stops after 500 ms
   turnBelt();
   // Whatever else the sketch has to do goes here: no step waits for it.
 }

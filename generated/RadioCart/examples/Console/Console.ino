@@ -195,6 +195,8 @@ void setup() {
 }
 
 void loop() {
+  leftKeepAlive();  // or it stops after 200 ms
+  rightKeepAlive();  // or it stops after 40 ms
   if (Serial.availableForWrite() < kRoom) return;  // the last line is still on its way
   if (helpLeft) {
     printHelpLine();

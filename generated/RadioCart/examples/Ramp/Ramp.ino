@@ -27,5 +27,7 @@ static void rampLeft() {
 }
 
 void loop() {
+  leftKeepAlive();  // or it stops after 200 ms
+  rightKeepAlive();  // or it stops after 40 ms
   rampLeft();
 }

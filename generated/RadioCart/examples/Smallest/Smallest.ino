@@ -9,4 +9,8 @@ void setup() {
   rightSetSpeed(MOTOR_CTRL_DRV_EN, motorTimerCalcPerSecond(200));  // steps/s
 }
 
-void loop() {}  // free for anything: the timer makes the steps
+void loop() {
+  leftKeepAlive();  // or it stops after 200 ms
+  rightKeepAlive();  // or it stops after 40 ms
+  // Free for anything that is soon over: the timer makes the steps.
+}

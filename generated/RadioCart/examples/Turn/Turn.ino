@@ -30,6 +30,8 @@ static void turnRight() {
 }
 
 void loop() {
+  leftKeepAlive();  // or it stops after 200 ms
+  rightKeepAlive();  // or it stops after 40 ms
   turnLeft();
   turnRight();
   // Whatever else the sketch has to do goes here: no step waits for it.
