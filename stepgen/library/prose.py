@@ -123,8 +123,8 @@ def init_comment(motor: MotorPlan) -> tuple[str, ...]:
     coils = ", with the coils off" if motor.switches_current else ""
     return comment_lines(
         f"Makes the pins outputs{coils}, at position 0. Call it once, from setup(). Until "
-        "then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile, such "
-        "as an ENABLE, needs a resistor."
+        "then, and from any reset on, they are inputs and drive nothing: what must not float "
+        "meanwhile, such as an ENABLE, needs a resistor."
     )
 
 
