@@ -143,6 +143,8 @@ def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
     if motor.steps_per_mm:
         yield ("steps per mm", f"{float(motor.steps_per_mm):.10g}")
     yield ("at rest", "coils off" if motor.releases_at_rest else "coils hold")
+    timeout = motor.command_timeout_ms
+    yield ("command time-out", "none" if timeout is None else f"{timeout} ms")
     yield ("step interrupt", f"{path.usual_cycles} cycles, response to RETI")
     if path.lap_cycles:
         yield (

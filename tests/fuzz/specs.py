@@ -112,6 +112,7 @@ def motor(draw: st.DrawFn, free: list[str], *, timed: bool) -> Data:
         | st.just({"kind": "update-events", "debug": True}),
         "steps_per_turn": st.integers(1, 1_000_000) | turn,
         "steps_per_mm": st.integers(1, 4000) | st.sampled_from([157.48, "20000/127"]),
+        "command_timeout_ms": st.integers(10, 100),
     }
     needed = {"at_rest": options.pop("at_rest")} if always_on else {}
     return {

@@ -19,10 +19,12 @@ from stepgen.verify.firmware import build_firmware
 from stepgen.verify.report import MotorFigures, SpecReport
 from stepgen.verify.runner import run_scenario
 from stepgen.verify.scenarios import standard_scenarios
+from stepgen.verify.timeout_scenarios import timeout_scenarios
 from stepgen.verify.toolchain import default_compiler
 from tests.fuzz.specs import specs, to_yaml
 
 FOUND = sorted((Path(__file__).parents[1] / "fuzz" / "found").iterdir())
+SILENCE = ": left alone at any point of a millisecond"
 FIRST_SEED = 20_260_201
 GROUPS, CAMPAIGN_GROUPS = 4, 100
 SPECS_IN_A_GROUP = 5
@@ -42,8 +44,8 @@ def prove(path: Path) -> None:
     firmware = build_firmware(plan, loaded.document.text, compiler)
     report = SpecReport(str(path), compiler.name, "simavr")
     report.motors = {motor.name: MotorFigures(0) for motor in plan.motors}
-    for scenario in standard_scenarios(plan):
-        if scenario.name in SCENARIOS:
+    for scenario in (*standard_scenarios(plan), *timeout_scenarios(plan)):
+        if scenario.name in SCENARIOS or scenario.name.endswith(SILENCE):
             outcome = run_scenario(loaded, plan, firmware.bench, scenario)
             assert outcome.findings == (), (scenario.name, path.read_text(encoding="utf-8"))
             report.masked_cycles = max(report.masked_cycles, outcome.masked_cycles)
