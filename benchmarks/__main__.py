@@ -4,10 +4,14 @@ Runs the benchmarks: ``python -m benchmarks [NAME]... [--rounds N]``.
 
 import argparse
 
-from benchmarks import newcomer, simavr_speed
+from benchmarks import compare_rates, newcomer, simavr_speed
 from stepgen.commands.report import print_tables
 
-BENCHMARKS = {"newcomer": newcomer, "simavr_speed": simavr_speed}
+BENCHMARKS = {
+    "newcomer": newcomer,
+    "simavr_speed": simavr_speed,
+    "compare_rates": compare_rates,
+}
 _ROUNDS = 7
 
 

@@ -132,6 +132,18 @@ class Timer16:
 
     counter_bytes: ClassVar[int] = 2
 
+    @property
+    def compare_channels(self) -> dict[str, tuple[Register, Vector]]:
+        """
+        Return compare register and vector of each compare channel that the chip has.
+        """
+        rows = (
+            ("A", self.ocra, self.compa),
+            ("B", self.ocrb, self.compb),
+            ("C", self.ocrc, self.compc),
+        )
+        return {name: (ocr, vector) for name, ocr, vector in rows if ocr and vector}
+
 
 @dataclass(frozen=True)
 class Timer8:

@@ -46,11 +46,9 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
     ]
     if motor.motion.watches_clock:
         wake = f"{motor.name}{'Motion.wake' if motor.motion.changes_speed else 'Deadline'}"
-        operands += [
-            f'[clock] "I"({CLOCK_BIT})',
-            f'[wake] "i"(&{wake})',
-            '[millis] "i"(&timer0_millis)',
-        ]
+        operands += [f'[clock] "I"({CLOCK_BIT})', f'[wake] "i"(&{wake})']
+    if motor.motion.watches_clock or motor.gate.look:
+        operands.append('[millis] "i"(&timer0_millis)')
     for name, register in motor.gate.registers:
         operands.append(_register_operand(name, register))
     for name, member in motor.gate.fields:

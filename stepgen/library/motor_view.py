@@ -100,6 +100,7 @@ class MotorView:
     isr_contract: tuple[str, ...]
     usual: tuple[Line, ...]
     clock: tuple[Line, ...]
+    late: tuple[Line, ...]
     rare: tuple[Line, ...]
     operands: tuple[Line, ...]
     wires: tuple[Named, ...]
@@ -127,7 +128,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         turns=_turns(motor),
         lengths=lengths(motor, board.f_cpu_hz),
         kernel_name=motor.kernel.kind,
-        timing_name=module_name(motor.timing.kind),
+        timing_name=motor.timing.module,
         motion_name=module_name(motor.motion.kind),
         timeout_name="none" if motor.command_timeout_ms is None else "command",
         timeout=_timeout(motor),
@@ -154,6 +155,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         isr_contract=isr_contract(motor),
         usual=instruction_lines(motor.hot_path.usual),
         clock=instruction_lines(motor.hot_path.clock),
+        late=instruction_lines(motor.hot_path.late),
         rare=instruction_lines(motor.hot_path.boundary),
         operands=operand_lines(motor),
         wires=tuple(

@@ -185,6 +185,8 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
         for cycles in (path.lap_cycles,)
         if cycles
     )
+    if motor.gate.boundary:
+        laps = " In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too."
     return comment_lines(
         f"Timer {timing.timer.number} {timing.event}: one step, {path.usual_cycles} cycles from "
         f"the interrupt's response to RETI{clock}; at most {motor.isr_bound_cycles} when it{late} "

@@ -144,7 +144,7 @@ def _motion_structs(motors: tuple[MotorView, ...]) -> tuple[MotionStruct, ...]:
 
 
 def _claims(plan: Plan) -> tuple[Named, ...]:
-    timers = [motor.timing.timer.number for motor in plan.motors]
+    timers = dict.fromkeys(motor.timing.timer.number for motor in plan.motors)
     rows = [
         Named(
             f"STEPGEN_CLAIMS_TIMER{number}",

@@ -58,11 +58,15 @@ def drive_claims(motor: str, drive: Drive, faults: Faults) -> Iterable[Claim]:
 
 def timing_claims(motor: str, timing: TimerPlan, way_out: str, faults: Faults) -> Iterable[Claim]:
     """
-    Return what *timing* takes: its timer and vector.
+    Return what *timing* takes: its timer, or a channel of one that it shares, and its vector.
     """
     place = faults.at("timing", "timer")
-    for resource in (f"timer {timing.timer.number}", _VECTOR + timing.vector):
-        yield Claim(resource, f"motor {motor}", place, way_out)
+    timer, owner = f"timer {timing.timer.number}", f"motor {motor}"
+    yield Claim(timer, owner, place, way_out, sharing=timing.sharing)
+    if timing.channel:
+        another = f"take another `channel`, or {way_out.removeprefix('take ')}"
+        yield Claim(f"channel {timing.channel} of {timer}", owner, place, another)
+    yield Claim(_VECTOR + timing.vector, owner, place, way_out)
 
 
 def sketch_claims(

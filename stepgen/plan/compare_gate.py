@@ -47,6 +47,7 @@ def gate(timer: Timer8, storage: Storage, mcu: Mcu) -> Gate:
         ),
         late_cycles=latest - until_step - cycles(step),
         overrun_cycles=(_LATE_TICKS - 1) * PRESCALER - until_read,
+        tells_missed=True,
         registers=(("ocr", timer.ocra), ("tcnt", timer.tcnt), ("tifr", timer.tifr)),
         fields=_FIELDS,
         constants=(("match", f"_BV(OCF{timer.number}A)"), ("statMissed", "MOTOR_STAT_MISSED")),

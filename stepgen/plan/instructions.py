@@ -44,6 +44,17 @@ class Gate:
         registers: The registers that its instructions name.
         fields: The members of the motor's motion that they name.
         constants: The constants that they name, as C text.
+        boundary: What comes first on the boundary's way: label 2 is the handler, without a step.
+        advance: What follows each step, with r24 free; it leaves r25 on the stack.
+        check: What follows that on the usual way, and gives r25 back: label 13 is the handler for
+            a step that is due already.
+        go_on: What follows the step of a boundary if the next run can begin without the handler,
+            with r25 on the stack; it branches to label 16 if it cannot.
+        out: What stands at label 16 then, before label 2.
+        look: What stands at label 20, where an end may be due: on to the step at label 21, or to 2.
+        handler_cycles: How much longer the boundary handler takes, at most.
+        masked_cycles: How much longer a call has interrupts off, at most.
+        tells_missed: Whether a step that was due before the one before it was made is counted.
     """
 
     instructions: tuple[Instruction, ...] = ()
@@ -54,6 +65,15 @@ class Gate:
     registers: tuple[tuple[str, Register], ...] = ()
     fields: tuple[tuple[str, str], ...] = ()
     constants: tuple[tuple[str, str], ...] = ()
+    boundary: tuple[Instruction, ...] = ()
+    advance: tuple[Instruction, ...] = ()
+    check: tuple[Instruction, ...] = ()
+    go_on: tuple[Instruction, ...] = ()
+    out: tuple[Instruction, ...] = ()
+    look: tuple[Instruction, ...] = ()
+    handler_cycles: int = 0
+    masked_cycles: int = 0
+    tells_missed: bool = False
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from stepgen.plan.kernels import Kernel
 from stepgen.plan.step_code import end_code, saved_registers, step_code
 
 _CLOCK_TAKEN_CYCLES = 1  # SBRC that does not skip and RJMP, against SBRC that does
+_BRANCH_WORDS = 63  # how far a branch reaches
 _VECTOR_JUMP_CYCLES = 3  # the JMP in the vector table
 
 
@@ -32,6 +33,8 @@ class Motion:
         limit_cycles: How much later still with a limit in milliseconds.
         masked_cycles: Longest stretch of a call of the library with interrupts off.
         dumps: Whether the library can print the state of the motion.
+        can_go_on: Whether the interrupt itself can begin the next run of steps, and look whether a
+            limit in milliseconds is over.
         setting_cycles: What of *handler_cycles* goes into setting the timer anew.
         masked_setting_cycles: The same of *masked_cycles*.
     """
@@ -44,6 +47,7 @@ class Motion:
     limit_cycles: int
     masked_cycles: int
     dumps: bool = False
+    can_go_on: bool = False
     setting_cycles: int = 0
     masked_setting_cycles: int = 0
     changes_speed: bool = False
@@ -60,10 +64,14 @@ class HotPath:
             comes right behind *usual*: the BREQ that leads there reaches 63 words, and a step on
             four ports takes 61.
         clock: What follows label 3: a look at the clock; empty where no motion needs one.
+        late: What follows label 13: on to the handler of a step that is due already; else empty.
         usual_cycles: Response, vector, all of *usual* on the way of a step.
+        recurring_cycles: The same of the longest way that each step can take for long; None where
+            that leads to the handler.
         lap_cycles: The same of interrupts without a step, in order of length; empty where none is.
         overrun_cycles: How late an interrupt begins, from its flag to the response, where its step
-            counts as missed; None where that cannot be told.
+            counts as missed; None where that is no matter of this interrupt.
+        tells_missed: Whether steps that are missed are counted.
         clock_cycles: The same with a look at the clock.
         edge_cycles: From the timer's flag to the end of the write that makes the step, usually.
         boundary_edge_cycles: The same on the boundary's way.
@@ -74,9 +82,12 @@ class HotPath:
     usual: tuple[Instruction, ...]
     boundary: tuple[Instruction, ...]
     clock: tuple[Instruction, ...]
+    late: tuple[Instruction, ...]
     usual_cycles: int
+    recurring_cycles: int | None
     lap_cycles: tuple[int, ...]
     overrun_cycles: int | None
+    tells_missed: bool
     clock_cycles: int
     edge_cycles: int
     boundary_edge_cycles: int
@@ -105,60 +116,110 @@ def compose(
         Instruction("in    r24, %[sreg]", 1),
         storage.scratch.store("r24", "scratch", "SREG waits here: nothing can interrupt"),
     )
-    count = (
+    count: tuple[Instruction, ...] = (
         storage.count.load("r24", "count"),
         Instruction("dec   r24", 1, "one step less until the next boundary"),
         storage.count.store("r24", "count"),
-        Instruction("breq  1f", 1, "each 255 steps, and where a move begins or ends"),
     )
     step = (
         *(Instruction(f"push  {register}", 2) for register in saved),
         *step_code(kernel, storage),
         *(Instruction(f"pop   {register}", 2) for register in reversed(saved)),
     )
+    moved, punctual = _moves(gate)
     leave = (
         storage.scratch.load("r24", "scratch"),
         Instruction("out   %[sreg], r24", 1),
         Instruction("pop   r24", 2),
     )
     think = (
-        Instruction("lds   r24, %[mode]", 2, "here the count is 0", label="1"),
+        *gate.boundary,
+        Instruction("lds   r24, %[mode]", 2, "here the count is 0"),
         Instruction("sbrc  r24, %[think]", 2, "an end may be due:"),
-        Instruction("rjmp  2f", 0, "think before the step"),
+        Instruction("rjmp  20f" if gate.look else "rjmp  2f", 0, "think before the step"),
     )
     out = (
         Instruction(leave[0].text, leave[0].cycles, leave[0].note, label="2"),
         *leave[1:],
         Instruction(f"jmp   {handler}", 3),
     )
+    think = (replace(think[0], label="1"), *think[1:])
     look, clock = _clock_watch() if motion.watches_clock else ((), ())
     if motion.watches_clock:
         count = (replace(count[0], label="4"), *count[1:])
+    reti = Instruction("reti", mcu.response_cycles)
+    ending = (*end_code(kernel, leave, total_cycles(punctual)), reti)
+    late = _late(end_code(kernel, leave, total_cycles(punctual)), handler) if gate.check else ()
+    count = (*count, *_to_boundary((*step, *punctual, *ending, *late)))
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
     until_gate = arrival + total_cycles(entry)
     until_count = until_gate + gate.step_cycles + total_cycles(look)
     until_step = until_count + total_cycles(count)
     until_rare_step = until_step + 1 + total_cycles(think)
-    rare_step = (*step, *end_code(kernel, ()))
-    reti = Instruction("reti", mcu.response_cycles)
-    onward = (*look, *count, *step, *end_code(kernel, leave), reti)
+    rare_step = (*step, *moved, *end_code(kernel, (), total_cycles(moved)))
+    again = (*gate.go_on, *leave, reti, *gate.out) if gate.go_on else ()
+    onward = (*look, *count, *_labelled(step, gate), *punctual, *ending)
     usual_cycles = until_gate + gate.step_cycles + total_cycles(onward)
     looked = _CLOCK_TAKEN_CYCLES + total_cycles(clock) if motion.watches_clock else 0
     overrun = gate.overrun_cycles
     due = looked + (until_count if motion.changes_speed else until_rare_step + 1)
+    by_look = until_rare_step + 1 + total_cycles((*gate.look, *step, *punctual, *ending))
+    going_on = until_rare_step + total_cycles((*rare_step, *gate.go_on, *leave, reti))
+    missed_turn = total_cycles((*gate.go_on, *gate.out))
     return HotPath(
         usual=(*entry, *gate.instructions, *onward),
-        boundary=(*think, *rare_step, *out),
+        boundary=(*think, *rare_step, *again, *out, *gate.look),
         clock=clock,
+        late=late,
         usual_cycles=usual_cycles,
+        recurring_cycles=max(by_look, going_on) if gate.look else None,
         lap_cycles=tuple(until_gate + cycles for cycles in gate.lap_cycles),
         overrun_cycles=None if overrun is None else overrun - until_gate,
+        tells_missed=gate.tells_missed,
         clock_cycles=usual_cycles + looked,
         edge_cycles=until_step + _cycles_to_edge(step),
         boundary_edge_cycles=until_rare_step + looked + _cycles_to_edge(step),
-        boundary_entry_cycles=until_rare_step + looked + total_cycles(rare_step + out),
-        think_entry_cycles=due + total_cycles(out),
+        boundary_entry_cycles=until_rare_step
+        + looked
+        + total_cycles(rare_step + out)
+        + missed_turn,
+        think_entry_cycles=due + total_cycles((*gate.look, *out)),
     )
+
+
+def _labelled(step: tuple[Instruction, ...], gate: Gate) -> tuple[Instruction, ...]:
+    """
+    Return *step* with label 21 where the look of *gate* goes on with it.
+    """
+    return (replace(step[0], label="21"), *step[1:]) if gate.look else step
+
+
+def _moves(gate: Gate) -> tuple[tuple[Instruction, ...], tuple[Instruction, ...]]:
+    """
+    Return what of *gate* follows a step: before a boundary, and on the usual way.
+    """
+    if not gate.advance:
+        return (), ()
+    give_back = () if gate.go_on else (Instruction("pop   r25", 2),)
+    return (*gate.advance, *give_back), (*gate.advance, *gate.check)
+
+
+def _late(ending: tuple[Instruction, ...], handler: str) -> tuple[Instruction, ...]:
+    """
+    Return how an interrupt ends whose next step is due already: with *ending*, in a handler.
+    """
+    first, *rest = ending
+    return (replace(first, label="13"), *rest, Instruction(f"jmp   {handler}_late", 3))
+
+
+def _to_boundary(between: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
+    """
+    Return the way to label 1, behind *between*: BREQ reaches 63 words, RJMP further.
+    """
+    note = "each 255 steps, and where a move begins or ends"
+    if sum(instruction.words for instruction in between) <= _BRANCH_WORDS:
+        return (Instruction("breq  1f", 1, note),)
+    return (Instruction("brne  .+2", 2), Instruction("rjmp  1f", 0, note))
 
 
 def _clock_watch() -> tuple[tuple[Instruction, ...], tuple[Instruction, ...]]:

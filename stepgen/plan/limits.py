@@ -56,7 +56,11 @@ class Chip:
         """
         sources = {one.name: self._source(one, period_cycles) for one in self.motors}
         # Where no interrupt of it is lost, it has nothing to make good.
-        own = replace(sources.pop(motor.name), cycles=motor.punctual_bound_cycles)
+        own = replace(
+            sources.pop(motor.name),
+            cycles=motor.recurring_bound_cycles,
+            rare_cycles=motor.punctual_bound_cycles - motor.recurring_bound_cycles,
+        )
         patience = plan_cadence(motor.timing, period_cycles).patience_cycles
         # CALL and RET are the longest instructions; they push and pop what the response does.
         main = MainLine(self.masked_cycles, self.board.mcu.response_cycles)
@@ -66,8 +70,9 @@ class Chip:
         return Source(
             f"the step interrupt of {motor.name}",
             self.board.mcu.vector(motor.timing.vector).number,
-            motor.isr_bound_cycles,
+            motor.recurring_bound_cycles + motor.gate.late_cycles,
             plan_cadence(motor.timing, period_cycles).spacing_cycles,
+            rare_cycles=motor.punctual_bound_cycles - motor.recurring_bound_cycles,
         )
 
 
@@ -198,7 +203,8 @@ def _held_off(chip: Chip, period: int) -> HeldOff:
         held = replace(chip, masked_cycles=stretch)
         return any(held.wait(motor, period) is None for motor in chip.motors)
 
-    too_long = _first(1, period + 1, loses) or 1
+    patience = max(plan_cadence(motor.timing, period).patience_cycles for motor in chip.motors)
+    too_long = _first(1, max(period, patience) + 1, loses) or 1
     held = replace(chip, masked_cycles=too_long - 1)
     waits = [held.wait(motor, period) for motor in chip.motors]
     late = max(wait.cycles for wait in waits if wait)

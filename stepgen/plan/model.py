@@ -47,6 +47,9 @@ class TimerPlan:
         largest_period_cycles: Longest time between two steps.
         rule: What the sketch has to mind beside the timer's pins, in whole sentences, or "".
         is_set_anew: Whether a change of speed can mean that the timer is set anew.
+        form: Which form of the timing it is, if there are several: its module and partial.
+        channel: The compare channel, where other motors can have the others; else "".
+        sharing: Timings with the same sharing, other than "", can be on one timer.
     """
 
     kind: str
@@ -58,6 +61,30 @@ class TimerPlan:
     largest_period_cycles: int
     rule: str = ""
     is_set_anew: bool = True
+    form: str = ""
+    channel: str = ""
+    sharing: str = ""
+
+    @property
+    def module(self) -> str:
+        """
+        Return the name of what decides and prints it: of its form, or of its kind.
+        """
+        return (self.form or self.kind).replace("-", "_")
+
+
+@dataclass(frozen=True)
+class Left:
+    """
+    What other motors and libraries leave of the timers.
+
+    Args:
+        free: The timers that nobody has, wide ones first.
+        channels: Those that motors share, each with the channels that are taken.
+    """
+
+    free: tuple[int, ...]
+    channels: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -175,8 +202,17 @@ class MotorPlan:
             self.hot_path.boundary_entry_cycles
             + self.kernel.handler.longest
             + self.motion.handler_cycles
+            + self.gate.handler_cycles
             - (0 if self.timing.is_set_anew else self.motion.setting_cycles)
         )
+
+    @property
+    def recurring_bound_cycles(self) -> int:
+        """
+        Return the same of the interrupts that can come at each step of a long motion.
+        """
+        recurring = self.hot_path.recurring_cycles
+        return self.punctual_bound_cycles if recurring is None else recurring
 
     @property
     def masked_bound_cycles(self) -> int:
@@ -186,6 +222,7 @@ class MotorPlan:
         return (
             self.motion.masked_cycles
             + self.kernel.handler.masked
+            + self.gate.masked_cycles
             - (0 if self.timing.is_set_anew else self.motion.masked_setting_cycles)
         )
 

@@ -25,7 +25,7 @@ from stepgen.plan.limits import (
     rate_limit,
     situations,
 )
-from stepgen.plan.model import MotorPlan, Plan, RateLimit, TimerPlan
+from stepgen.plan.model import Left, MotorPlan, Plan, RateLimit, TimerPlan
 from stepgen.plan.motions import plan_motion
 from stepgen.plan.timings import plan_gate, plan_timing, way_out
 from stepgen.plan.uses import Use, read_uses
@@ -159,21 +159,34 @@ def _plan_timings(
     loaded: LoadedSpec, uses: Iterable[Use], board: Board, faults: Faults
 ) -> dict[str, TimerPlan | None]:
     """
-    Return each motor's timer; those that name one choose before those that take what is free.
+    Return each motor's timer; those that name most of it choose first.
     """
     motors = loaded.spec.motors
-    named = {name for name, motor in motors.items() if _timer(motor) is not None}
     plans: dict[str, TimerPlan | None] = {}
-    for name in sorted(motors, key=lambda name: name not in named):
-        free = free_timers(board, uses, plans.values())
+    for name in sorted(motors, key=lambda name: -_named(motors[name])):
+        left = Left(free_timers(board, uses, plans.values()), _channels(plans.values()))
         place = _at(faults, name).at("timing")
-        plans[name] = plan_timing(motors[name].timing, board, free, place)
+        plans[name] = plan_timing(motors[name].timing, board, left, place)
     return plans
 
 
-def _timer(motor: Motor) -> int | None:
-    timer: int | None = getattr(motor.timing, "timer", None)
-    return timer
+def _named(motor: Motor) -> int:
+    """
+    Return how much of its timer *motor* names: timer and channel, the timer, or nothing.
+    """
+    return sum(getattr(motor.timing, part, None) is not None for part in ("timer", "channel"))
+
+
+def _channels(taken: Iterable[TimerPlan | None]) -> dict[int, tuple[str, ...]]:
+    """
+    Return the channels that the plans in *taken* have, by timer.
+    """
+    channels: dict[int, tuple[str, ...]] = {}
+    for plan in taken:
+        if plan and plan.channel:
+            number = plan.timer.number
+            channels[number] = (*channels.get(number, ()), plan.channel)
+    return channels
 
 
 def free_timers(
@@ -226,7 +239,7 @@ def _plan_motor(
     # avr-gcc takes a function for an interrupt handler only when it is called __vector...
     handler = f"__vector_{name}_boundary"
     motion = plan_motion(motor.motion, timed=motor.command_timeout_ms is not None)
-    gate = plan_gate(timing, storage, board.mcu)
+    gate = plan_gate(timing, motion, storage, board.mcu)
     return MotorPlan(
         name=name,
         motion=motion,

@@ -16,15 +16,19 @@ def pulse_start(kernel: Pulse) -> tuple[Instruction, ...]:
     return _write(kernel, rises=True)
 
 
-def pulse_end(kernel: Pulse, leave: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
+def pulse_end(
+    kernel: Pulse, leave: tuple[Instruction, ...], spent_cycles: int = 0
+) -> tuple[Instruction, ...]:
     """
     Return what lasts until the pulse and its pause are long enough, with *leave* in it.
+
+    STEP has been HIGH for *spent_cycles* already.
 
     *leave* gives SREG and r24 back, which must be done anyhow: it is part of the pulse, if CBI ends
     that and the way to the next step is as long as the pause; else it is part of the pause.
     """
     fall = _write(kernel, rises=False)
-    left = kernel.cycles.high - total_cycles(fall)
+    left = kernel.cycles.high - total_cycles(fall) - spent_cycles
     spare = total_cycles(leave)
     if kernel.is_near and not kernel.low_wait_cycles:
         return (*_wait(left - spare, "STEP stays HIGH"), *leave, *fall)

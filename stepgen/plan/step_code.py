@@ -29,11 +29,15 @@ def step_code(kernel: Kernel, storage: Storage) -> tuple[Instruction, ...]:
     return _ring_step(kernel, storage)
 
 
-def end_code(kernel: Kernel, leave: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
+def end_code(
+    kernel: Kernel, leave: tuple[Instruction, ...], spent_cycles: int = 0
+) -> tuple[Instruction, ...]:
     """
     Return *leave*, which gives SREG and r24 back, with what ends the step before it or behind it.
+
+    *spent_cycles* have passed since the step's edge, beside the edge itself.
     """
-    return pulse_end(kernel, leave) if isinstance(kernel, Pulse) else leave
+    return pulse_end(kernel, leave, spent_cycles) if isinstance(kernel, Pulse) else leave
 
 
 def _toggle_step(kernel: Toggle, storage: Storage) -> tuple[Instruction, ...]:

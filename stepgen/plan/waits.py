@@ -42,6 +42,9 @@ SHORT_APART = 2
 LONG_APART = 32
 """How many lie between two long ones: each call that has one works out a timer setting first."""
 
+RARE_RUNS = 3
+"""How often the rare way comes without a call between: a run's, a move's and the coils' end."""
+
 _MOST_RUNS = 50  # a backlog that lasts longer counts as one that never ends
 
 
@@ -57,6 +60,8 @@ class Source:
         spacing_cycles: Shortest time between two.
         at_once: How many can follow each other without that time between.
         waiting: How many can be waiting after interrupts were off for long.
+        rare_cycles: How much longer it takes now and then: up to `RARE_RUNS` times together, and
+            once more for each call that there can be meanwhile.
     """
 
     cause: str
@@ -65,6 +70,14 @@ class Source:
     spacing_cycles: int
     at_once: int = 1
     waiting: int = 1
+    rare_cycles: int = 0
+
+    def total_cycles(self, count: int) -> int:
+        """
+        Return what *count* runs of it take together, at most.
+        """
+        rare = min(count, RARE_RUNS + count // LONG_APART)
+        return count * self.cycles + rare * self.rare_cycles
 
     def most(self, window: int, masked: int) -> int:
         """
@@ -118,7 +131,9 @@ def longest_wait(
             return None
         start = sum(part.cycles for part in parts)
         first, latest = first or parts, max(latest, start - due)
-        if start + own.cycles + main.instruction_cycles <= due + own.spacing_cycles:
+        rare = own.rare_cycles if runs < RARE_RUNS else 0
+        ended = start + own.cycles + rare + main.instruction_cycles
+        if ended <= due + own.spacing_cycles:
             return Wait(latest, first)
     return None
 
@@ -152,7 +167,7 @@ def _before(
     Yield what can come before a run that begins at *start*, counted from the first due time.
     """
     later = [other for other in others if other.vector > own.vector]
-    lower = max(later, key=lambda other: other.cycles, default=None)
+    lower = max(later, key=lambda other: other.total_cycles(1), default=None)
     masked = main.masked_cycles
     counts = [(one, one.most(start, masked)) for one in others if one.vector < own.vector]
     served = sum(count for _, count in counts) + runs + bool(lower)
@@ -160,8 +175,8 @@ def _before(
     yield Part("a call with interrupts off", masked * (1 + passed // LONG_APART))
     yield Part("short stretches with interrupts off", passed // SHORT_APART * SHORT_STRETCH_CYCLES)
     if lower:
-        yield Part(lower.cause, lower.cycles)
-    yield from (Part(one.cause, count * one.cycles) for one, count in counts if count)
+        yield Part(lower.cause, lower.total_cycles(1))
+    yield from (Part(one.cause, one.total_cycles(count)) for one, count in counts if count)
     if runs:
-        yield Part("its own earlier steps", runs * own.cycles)
+        yield Part("its own earlier steps", own.total_cycles(runs))
     yield Part("instructions in between", (1 + served) * main.instruction_cycles)

@@ -6,7 +6,7 @@ from enum import IntEnum, IntFlag
 from typing import Literal
 
 MotionKind = Literal["constant", "update-events"]
-TimingKind = Literal["fast-pwm", "ctc", "compare"]
+TimingKind = Literal["fast-pwm", "ctc", "compare", "wide-compare"]
 
 
 class Control(IntFlag):

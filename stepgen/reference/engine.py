@@ -140,6 +140,8 @@ class Engine:
     def _step(self, motion: Motion, deadline: int) -> None:
         self.axis.step(deadline, motion.direction, motion.call_index)
         self.pace.go_on(deadline, motion.begin_interval())
+        if self.facts.sees_passed and self.pace.is_passed(deadline):
+            self.notices.overrun()
         if motion.count_step():
             self._end()
         elif motion.updates_in_interrupt:

@@ -11,6 +11,7 @@ from stepgen.reference.sequences import Pattern
 from stepgen.reference.timer import FASTEST_CYCLES, SETTINGS, SLOWEST_CYCLES, TimerSetting
 
 ServiceCycle = Callable[[int], int]
+SetCycle = Callable[[int], int | None]
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,7 @@ class MotorFacts:
         wake_cycles: The shortest first interval from rest, as a virtual value.
         command_timeout_millis: How long after the last word of the sketch a step is still made, as
             ``millis()`` counts; None for ever.
+        sees_passed: Whether a step counts as missed that is due before the one before it is made.
     """
 
     phases: tuple[Pattern, ...]
@@ -46,6 +48,7 @@ class MotorFacts:
     has_direction: bool = False
     wake_cycles: int = 0
     command_timeout_millis: int | None = None
+    sees_passed: bool = False
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:
@@ -56,6 +59,13 @@ class MotorFacts:
         Return what the timing makes of *virtual_cycles* between two steps.
         """
         return SETTINGS[self.timing](virtual_cycles)
+
+    @property
+    def tells_missed(self) -> bool:
+        """
+        Tell whether steps that are missed are counted.
+        """
+        return self.sees_passed or self.overrun_cycles is not None
 
     @property
     def released(self) -> tuple[Pattern, ...]:
@@ -75,6 +85,12 @@ class MotorFacts:
 
 def _only(wires: Iterable[bool], kept: Iterable[bool]) -> tuple[bool, ...]:
     return tuple(wire and keep for wire, keep in zip(wires, kept, strict=True))
+
+
+def never_set(_deadline_cycle: int) -> None:
+    """
+    Return None: no interrupt sets a channel.
+    """
 
 
 def served_at_once(deadline_cycle: int) -> int:

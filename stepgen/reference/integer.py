@@ -11,7 +11,13 @@ from typing import assert_never
 from stepgen.reference.axis import Axis, DirectedAxis, Turn, wrapped_int32
 from stepgen.reference.contract import Code, Control, Status
 from stepgen.reference.engine import Engine
-from stepgen.reference.facts import MotorFacts, ServiceCycle, served_at_once
+from stepgen.reference.facts import (
+    MotorFacts,
+    ServiceCycle,
+    SetCycle,
+    never_set,
+    served_at_once,
+)
 from stepgen.reference.notices import CallbackMade
 from stepgen.reference.pace import Pace
 from stepgen.reference.sharing import Need
@@ -19,6 +25,7 @@ from stepgen.reference.stimuli import (
     Call,
     CallBack,
     Callbacks,
+    ChannelSet,
     ClockOn,
     Edge,
     Hold,
@@ -54,6 +61,8 @@ class MotorModel:
     Args:
         facts: What the spec decides.
         service_cycle: A pure function from a deadline to the cycle of its service.
+        set_cycle: The same to the cycle at which that has set the channel of a timer that runs
+            through for the next; on such a timer a step that was due by then is an overrun.
         position: Where the position begins, for tests of its wrap; Init makes it 0.
     """
 
@@ -62,12 +71,13 @@ class MotorModel:
         facts: MotorFacts,
         service_cycle: ServiceCycle = served_at_once,
         *,
+        set_cycle: SetCycle = never_set,
         position: int = 0,
     ) -> None:
         self._facts = facts
         axis = DirectedAxis if facts.has_direction else Axis
         self._axis = axis(facts.phases, facts.released, wrapped_int32(position))
-        self._engine = Engine(facts, self._axis, Pace(service_cycle))
+        self._engine = Engine(facts, self._axis, Pace(service_cycle, set_cycle))
         self._notices = self._engine.notices
         self._now_cycle = 0
         self._codes: list[Code] = []
@@ -207,6 +217,8 @@ class MotorModel:
         match stimulus:
             case ClockOn():
                 self._engine.pace.clock_on(stimulus)
+            case ChannelSet():
+                self._engine.pace.channel_set(stimulus)
             case Callbacks():
                 self._notices.has_reached_callback = stimulus.reached
                 self._notices.has_fault_callback = stimulus.fault

@@ -4,9 +4,14 @@ When the step interrupt comes: the deadlines of the timer, and when each is serv
 
 from dataclasses import dataclass, field
 
-from stepgen.reference.facts import ServiceCycle
-from stepgen.reference.stimuli import ClockOn
-from stepgen.reference.timer import TimerSetting, first_overflow_cycle
+from stepgen.reference.facts import ServiceCycle, SetCycle
+from stepgen.reference.stimuli import ChannelSet, ClockOn
+from stepgen.reference.timer import (
+    HALF_ROUND_CYCLES,
+    TimerSetting,
+    first_match_cycles,
+    first_overflow_cycle,
+)
 
 
 @dataclass
@@ -16,12 +21,15 @@ class Pace:
 
     Args:
         service_cycle: A pure function from a deadline to the cycle of its service.
+        set_cycle: The same to the cycle at which its interrupt has set the channel for the next,
+            None where it sets none.
         interval: Prescaler and period of the interval in progress, None at rest.
         deadline_cycle: When the timer sets the flag of a step next, None until its clock is on.
         begun: Each interval so far that began with a step, by the deadline of that step.
     """
 
     service_cycle: ServiceCycle
+    set_cycle: SetCycle
     interval: TimerSetting | None = None
     deadline_cycle: int | None = None
     begun: dict[int, TimerSetting] = field(default_factory=dict)
@@ -51,6 +59,28 @@ class Pace:
         """
         if self.interval is not None and clock.prescaler == self.interval.prescaler:
             self.deadline_cycle = first_overflow_cycle(clock.cycle, clock.tcnt, self.interval)
+
+    def channel_set(self, setting: ChannelSet) -> None:
+        """
+        Take the deadline of the interval in progress from the first match of its channel.
+        """
+        if self.interval is not None:
+            period = self.interval.period_cycles
+            first = setting.cycle + setting.ahead_cycles
+            self.deadline_cycle = first + period - first_match_cycles(period)
+
+    def is_passed(self, deadline: int) -> bool:
+        """
+        Tell whether the step after that of *deadline* was due before its channel was set to it.
+
+        A channel matches at the clocks after the one that sets it. With laps it is not set to the
+        next step by then.
+        """
+        set_cycle = self.set_cycle(deadline)
+        following = self.deadline_cycle
+        if set_cycle is None or following is None or following - deadline >= HALF_ROUND_CYCLES:
+            return False
+        return following <= set_cycle
 
     def lateness_cycles(self, deadline: int) -> int:
         """

@@ -5,18 +5,20 @@ Wires: STEP, DIR and, if there is one, ENABLE. Between two steps STEP is LOW; a 
 it. DIR is LOW forward and HIGH backward, from the call that turns the motor round on.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 from stepgen.devices import DRIVERS
 from stepgen.reference.sequences import Pattern
 
 # A pulse may be longer than the driver needs by what an interrupt does in it anyhow.
 _LONGER_CYCLES = 16
+# On a 16-bit timer that runs through it reads and writes the timer meanwhile.
+_LONGER_AT_COMPARE_CYCLES = 48
 _NS_IN_A_SECOND = 1_000_000_000
 # The first interval is cut off to a whole tick, and can be one tick short: 1024 cycles each.
 _WAKE_MARGIN_CYCLES = 2048
-_NEVER_SHORTER_CYCLES = {"fast-pwm": 640, "ctc": 640, "compare": 2048}
+_NEVER_SHORTER_CYCLES = {"fast-pwm": 640, "ctc": 640, "compare": 2048, "wide-compare": 100}
 """Intervals that every motor of a timing has at least: a driver that is quicker need not wait."""
 
 
@@ -58,6 +60,14 @@ class PulseFacts:
         if self.enabled_level is None:
             return Pattern((False, False), (True, False))
         return Pattern((False, False, not self.enabled_level), (True, False, True))
+
+    def with_timing(self, timing: str) -> Self:
+        """
+        Return the same for a motor of that *timing*, whose interrupt may do more within a pulse.
+        """
+        if timing != "wide-compare":
+            return self
+        return replace(self, longest_high=self.high + _LONGER_AT_COMPARE_CYCLES)
 
     def wake_cycles(self, timing: str) -> int:
         """

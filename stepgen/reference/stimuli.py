@@ -66,6 +66,16 @@ class ClockOn:
 
 
 @dataclass(frozen=True)
+class ChannelSet:
+    """
+    A call set the motor's compare channel: it matches *ahead_cycles* later, 1 to 65 536.
+    """
+
+    cycle: int
+    ahead_cycles: int
+
+
+@dataclass(frozen=True)
 class MillisTick:
     """
     From this cycle on ``millis()`` returns *millis*, 32 bits.
@@ -153,7 +163,7 @@ class Callbacks:
 
 
 Call = SetSpeed | Hold | Release | Init
-Stimulus = Call | UpdateCheck | CallBack | KeepAlive | Callbacks | ClockOn | MillisTick
+Stimulus = Call | UpdateCheck | CallBack | KeepAlive | Callbacks | ClockOn | ChannelSet | MillisTick
 
 
 class EdgeKind(StrEnum):

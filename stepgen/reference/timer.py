@@ -1,5 +1,5 @@
 """
-The 16-bit timers in fast PWM mode 15 and CTC, timer 2 running through, the datasheet's way.
+The 16-bit timers in fast PWM mode 15 and CTC, timers that run through, the datasheet's way.
 
 Sources: ATmega328P and ATmega2560 datasheets, "16-bit Timer/Counter", sections "Fast PWM
 Mode", "Timer/Counter Timing Diagrams" and "Using the Output Compare Unit", and
@@ -15,6 +15,8 @@ from stepgen.reference.contract import TimingKind
 PRESCALERS = (1, 8, 64, 256, 1024)
 COMPARE_PRESCALER = 8
 COUNTER_STATES = 65_536
+HALF_ROUND_CYCLES = COUNTER_STATES // 2
+LAP_CYCLES = COUNTER_STATES // 4
 SLOWEST_CYCLES = 65_535 * 1024
 FASTEST_CYCLES = 4  # mode 15 has at least 2 bits: OCRnA = 3 is the smallest TOP
 
@@ -80,8 +82,39 @@ def through_running_setting(virtual_cycles: int) -> TimerSetting:
     return TimerSetting(COMPARE_PRESCALER, virtual_cycles // COMPARE_PRESCALER)
 
 
+def unscaled_setting(virtual_cycles: int) -> TimerSetting:
+    """
+    Return the setting of timing ``compare`` on a 16-bit timer, 1 to 65535 * 1024.
+
+    There is no prescaler, so nothing is cut off: each interval has as many clocks as it was given.
+
+    Raises:
+        ValueError: Out of range.
+    """
+    if not 1 <= virtual_cycles <= SLOWEST_CYCLES:
+        raise ValueError(f"{virtual_cycles} cycles are not within 1 to {SLOWEST_CYCLES}")
+    return TimerSetting(1, virtual_cycles)
+
+
+def first_match_cycles(interval_cycles: int) -> int:
+    """
+    Return how long after a step its channel on a 16-bit timer matches next.
+
+    Up to 32 767 clocks that is the next step. From there on the matches lie 16 384 clocks apart,
+    counted back from the next step, and the first comes 16 384 clocks after the step or later.
+    """
+    if interval_cycles < HALF_ROUND_CYCLES:
+        return interval_cycles
+    return LAP_CYCLES + interval_cycles % LAP_CYCLES
+
+
 SETTINGS: Mapping[TimingKind, Callable[[int], TimerSetting]] = MappingProxyType(
-    {"fast-pwm": timer_setting, "ctc": timer_setting, "compare": through_running_setting}
+    {
+        "fast-pwm": timer_setting,
+        "ctc": timer_setting,
+        "compare": through_running_setting,
+        "wide-compare": unscaled_setting,
+    }
 )
 """What each timing makes of a virtual value."""
 

@@ -8,8 +8,9 @@ from pathlib import Path
 from struct import Struct
 from typing import Self
 
+from stepgen.devices import Register, Timer16
 from stepgen.errors import StepgenError
-from stepgen.plan.model import Plan
+from stepgen.plan.model import Plan, TimerPlan
 from stepgen.verify.events import Events
 from stepgen.verify.simulators import SIMAVR, Simulator
 
@@ -273,10 +274,10 @@ def mail(call: Call, loop: Loop) -> bytes:
 
 def watched_registers(plan: Plan) -> list[int]:
     """
-    Return the data addresses whose writes tell when a motor's timer is started.
+    Return the data addresses whose writes tell when a motor's timer or channel is started.
     """
-    timers = [motor.timing.timer for motor in plan.motors]
-    return [
+    timers = dict.fromkeys(motor.timing.timer for motor in plan.motors)
+    of_timers = [
         address
         for timer in timers
         for address in (
@@ -284,3 +285,14 @@ def watched_registers(plan: Plan) -> list[int]:
             *(timer.tcnt.address + byte for byte in range(timer.counter_bytes)),
         )
     ]
+    channels = (compare_channel(motor.timing) for motor in plan.motors)
+    return of_timers + [one.address + byte for one in channels if one for byte in (0, 1)]
+
+
+def compare_channel(timing: TimerPlan) -> Register | None:
+    """
+    Return the compare register of the 16-bit timer's channel that *timing* has, if it has one.
+    """
+    if not timing.channel or not isinstance(timing.timer, Timer16):
+        return None
+    return timing.timer.compare_channels[timing.channel][0]

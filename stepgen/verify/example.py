@@ -60,14 +60,14 @@ def _kept_alive(subject: Subject) -> Subject:
 
 def _calls(trace: Trace, subject: Subject, index: int, plan: Plan) -> list[Answer]:
     """
-    Return the calls that the example must have made, one for each start of the timer.
+    Return the calls that the example must have made, one for each start of its timer or channel.
     """
     motor = plan.motors[index]
     steps = round(motor.steps_per_turn) if motor.steps_per_turn else _DEFAULT_STEPS
     fastest_sps = plan.board.f_cpu_hz // plan.minimum_period_cycles
     top = plan.board.f_cpu_hz // min(_SPEED_SPS, fastest_sps)
     answers: list[Answer] = []
-    for start in trace.clock_starts(subject.timer):
+    for start in subject.clock_starts(trace):
         section = trace.masked_section(start.cycle)
         if section:  # the Arduino core's own init() starts every timer with interrupts on
             control = BACK if len(answers) % 2 else DRIVE

@@ -10,6 +10,7 @@ from stepgen.devices import Board
 from stepgen.reference.stimuli import (
     CallBack,
     Callbacks,
+    ChannelSet,
     ClockOn,
     Hold,
     Init,
@@ -94,11 +95,17 @@ def happenings(
     for answer in answers:
         if answer.call.motor == index:
             yield from _rows_of_call(answer, trace)
-            if subject.facts.overrun_cycles is not None:
+            if subject.facts.tells_missed:
                 yield from _rows_of_missed(answer, trace)
-    for start in trace.clock_starts(subject.timer):
-        clock_on = ClockOn(start.cycle, start.prescaler, start.tcnt)
-        yield start.cycle, Order.CLOCK, Told(clock_on)
+    starts = trace.clock_starts(subject.timer)
+    if subject.channel is None:
+        for start in starts:
+            clock_on = ClockOn(start.cycle, start.prescaler, start.tcnt)
+            yield start.cycle, Order.CLOCK, Told(clock_on)
+    else:
+        for one in trace.channel_sets(subject.channel, starts):
+            if not one.in_interrupt:
+                yield one.cycle, Order.CLOCK, Told(ChannelSet(one.cycle, one.ahead_cycles))
     vector = board.mcu.vector("TIMER0_OVF_vect").number
     for cycle, millis in trace.millis_ticks(vector, board.f_cpu_hz):
         yield cycle, Order.MILLIS, Told(MillisTick(cycle, millis))

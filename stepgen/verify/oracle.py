@@ -26,6 +26,7 @@ from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run, Trace
 
 _MOST_OF_A_KIND = 3
+_AT_ONCE_CYCLES = 32  # an interrupt asked for at once comes within so many, or waits already
 _NUMBER = re.compile(r"\d+")
 WAKE_CYCLES = 4  # more, when the interrupt wakes the chip from idle sleep (datasheet)
 
@@ -92,7 +93,8 @@ class Oracle:
         self._scene = scene
         self._raised = [run.raised for run in runs]
         self._runs = runs
-        self._model = MotorModel(subject.facts, self._service_cycle)
+        self._sets = _first_sets(subject, scene.trace, runs)
+        self._model = MotorModel(subject.facts, self._service_cycle, set_cycle=self._set_cycle)
         self._edges: list[Edge] = []
         self._millis = 0
         self._was_timed_out = False
@@ -158,15 +160,50 @@ class Oracle:
     def _service_cycle(self, deadline: int) -> int:
         tolerance = self._scene.tolerance_cycles
         place = bisect_left(self._raised, deadline - tolerance)
-        if place < len(self._runs) and self._raised[place] <= deadline + tolerance:
+        if self._is_own(place, deadline + tolerance):
             self._own.add(self._raised[place])
             return self._runs[place].entered
+        asked = self._asked_for(place, deadline)
+        if asked is not None:
+            self._later[asked.raised] = deadline
+            return asked.entered
         if place and self._serves_later(self._runs[place - 1], deadline):
             before = self._runs[place - 1]
             self._later[before.raised] = deadline
             return max(deadline, before.entered)
         # Nobody served it. A call that masks the interrupts before it could be served comes first.
         return self._scene.trace.served_from(deadline)
+
+    def _is_own(self, place: int, latest_cycle: int) -> bool:
+        """
+        Tell whether run number *place* was raised by then, and not for an earlier deadline.
+        """
+        if place >= len(self._runs) or self._raised[place] > latest_cycle:
+            return False
+        return self._subject.channel is None or self._raised[place] not in self._later
+
+    def _asked_for(self, place: int, deadline: int) -> Run | None:
+        """
+        Return the run, number *place* or later, that came since the run before saw *deadline* gone.
+
+        It came at once. Where several steps were passed, those before it have runs of their own.
+        """
+        for number in range(max(place, 1), len(self._runs)):
+            run, before = self._runs[number], self._runs[number - 1]
+            if self._later.get(run.raised, deadline) != deadline:
+                continue
+            set_cycle = self._sets.get(before.entered)
+            is_passed = set_cycle is not None and deadline <= set_cycle
+            at_once = run.raised <= before.left + _AT_ONCE_CYCLES
+            return run if is_passed and at_once and run.raised not in self._own else None
+        return None
+
+    def _set_cycle(self, deadline: int) -> int | None:
+        """
+        Return when the interrupt that served *deadline* has set its channel for the next.
+        """
+        service = self._service_cycle(deadline)
+        return self._sets.get(service)
 
     def _serves_later(self, run: Run, deadline: int) -> bool:
         """
@@ -218,3 +255,19 @@ class Oracle:
         known = (self._was_timed_out, self._model.timed_out)
         if answer.timed_out not in known:
             result.report(f"timed out {answer.timed_out} at cycle {cycle}, the model says {known}")
+
+
+def _first_sets(subject: Subject, trace: Trace, runs: Sequence[Run]) -> dict[int, int]:
+    """
+    Return when each of *runs* first set the motor's channel, by when it was entered.
+    """
+    if subject.channel is None:
+        return {}
+    starts = trace.clock_starts(subject.timer)
+    sets = [one.cycle for one in trace.channel_sets(subject.channel, starts) if one.in_interrupt]
+    found = {}
+    for run in runs:
+        place = bisect_left(sets, run.entered)
+        if place < len(sets) and sets[place] <= run.left:
+            found[run.entered] = sets[place]
+    return found

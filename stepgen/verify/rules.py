@@ -44,7 +44,7 @@ def broken_rules(
     yield from _unmasked_calls(subject, scene, answers)
     steps = [edge for edge in edges if edge.kind is EdgeKind.STEP]
     calls = [answer for answer in answers if answer.call.kind not in _NO_CODE]
-    starts = scene.trace.clock_starts(subject.timer)
+    starts = subject.clock_starts(scene.trace)
     yield from _wrong_intervals(intervals, runs, steps, starts)
     yield from _wrong_starts(subject, scene, calls, steps)
     yield from _late_edges(subject, scene.plan.motors[index], runs, calls, steps)
@@ -56,7 +56,7 @@ def _unmasked_calls(subject: Subject, scene: Scene, answers: Sequence[Answer]) -
     """
     for answer in answers:
         sections = _MASKED_SECTIONS.get(answer.call.kind, 1)
-        if answer.call.kind is CallKind.READ and subject.facts.overrun_cycles is not None:
+        if answer.call.kind is CallKind.READ and subject.facts.tells_missed:
             sections += 1  # the missed steps
         if scene.trace.commit(answer.begin_cycle, answer.end_cycle, sections - 1) is None:
             yield f"{answer.call} touches what the interrupt changes without masking it"
@@ -115,7 +115,7 @@ def _wrong_starts(
     """
     From rest the first step comes one interval after the call, at most one tick early.
     """
-    starts = scene.trace.clock_starts(subject.timer)
+    starts = subject.clock_starts(scene.trace)
     firsts: dict[int, Edge] = {}
     for step in steps:
         firsts.setdefault(step.call_index, step)

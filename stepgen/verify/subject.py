@@ -10,14 +10,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from stepgen.devices import PortBit, Timer
+from stepgen.devices import PortBit, Register, Timer
 from stepgen.plan.model import Plan
 from stepgen.reference.contract import MotionKind, TimingKind
 from stepgen.reference.facts import MotorFacts
 from stepgen.spec import LoadedSpec, Motor
+from stepgen.verify.bench import compare_channel
 from stepgen.verify.drives import DriveFacts, drive_facts
 from stepgen.verify.elf import read_firmware
-from stepgen.verify.trace import PortState, Run
+from stepgen.verify.trace import ClockStart, PortState, Run, Trace
 
 _VECTOR_BYTES = 4
 _RJMP = 0xC000
@@ -35,6 +36,7 @@ class Subject:
         vector: Number of the interrupt that makes its steps.
         timer: Its timer.
         shared: Those of its wires that are another motor's too.
+        channel: The compare register that makes its steps on a timer that runs through, else None.
     """
 
     name: str
@@ -43,6 +45,20 @@ class Subject:
     vector: int
     timer: Timer
     shared: tuple[PortBit, ...] = ()
+    channel: Register | None = None
+
+    def clock_starts(self, trace: Trace) -> list[ClockStart]:
+        """
+        Return when its timer was started in *trace*; of a channel, when a call set it.
+        """
+        starts = trace.clock_starts(self.timer)
+        if self.channel is None:
+            return starts
+        return [
+            ClockStart(one.cycle, 1, 0)
+            for one in trace.channel_sets(self.channel, starts)
+            if not one.in_interrupt
+        ]
 
     @property
     def masks(self) -> dict[str, int]:
@@ -91,7 +107,11 @@ def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:
     for name, planned in zip(motors, plan.motors, strict=True):
         drive = drives[name]
         shared = tuple(bit for bit in drive.wires if users[bit] > 1)
-        facts = _facts(motors[name], drive, plan, shares_enables=bool(shared))
+        channel = compare_channel(planned.timing)
+        timing = _timing(motors[name], channel)
+        pulse = drive.pulse and drive.pulse.with_timing(timing)
+        drive = replace(drive, pulse=pulse)
+        facts = _facts(motors[name], drive, plan, timing, shares_enables=bool(shared))
         vector = plan.board.mcu.vector(planned.timing.vector).number
         overrun = planned.hot_path.overrun_cycles
         saved = _jump_saved_cycles(image, vector)
@@ -103,6 +123,7 @@ def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:
                 vector=vector,
                 timer=planned.timing.timer,
                 shared=shared,
+                channel=channel,
             )
         )
     return tuple(found)
@@ -125,11 +146,17 @@ def _jump_saved_cycles(image: bytes, vector: int) -> int:
     return int(opcode & 0xF000 == _RJMP)
 
 
-def _facts(motor: Motor, drive: DriveFacts, plan: Plan, *, shares_enables: bool) -> MotorFacts:
+def _timing(motor: Motor, channel: Register | None) -> TimingKind:
+    spec: Any = motor.timing
+    kind: TimingKind = spec.kind
+    return "wide-compare" if channel else kind
+
+
+def _facts(
+    motor: Motor, drive: DriveFacts, plan: Plan, timing: TimingKind, *, shares_enables: bool
+) -> MotorFacts:
     motion_spec: Any = motor.motion
     motion: MotionKind = motion_spec.kind
-    timing_spec: Any = motor.timing
-    timing: TimingKind = timing_spec.kind
     return MotorFacts(
         phases=drive.phases,
         coils_off=drive.coils_off,
@@ -141,4 +168,5 @@ def _facts(motor: Motor, drive: DriveFacts, plan: Plan, *, shares_enables: bool)
         has_direction=drive.pulse is not None,
         command_timeout_millis=motor.command_timeout_ms,
         wake_cycles=drive.pulse.wake_cycles(timing) if drive.pulse else 0,
+        sees_passed=timing == "wide-compare",
     )

@@ -3,16 +3,18 @@ From recorded events to what each motor was seen to do.
 """
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from stepgen.devices import Mcu, Timer
+from stepgen.devices import Mcu, Register, Timer
 from stepgen.reference.core_clock import millis_after
 from stepgen.verify.events import Events, Kind
 
 _CLOCK_SELECT = 0b111
 _SKETCH_VECTOR = "TIMER0_COMPA_vect"  # where the bench makes the calls of `Context.INTERRUPT`
+_COUNTER_STATES = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,17 @@ class ClockStart:
     cycle: int
     prescaler: int
     tcnt: int
+
+
+@dataclass(frozen=True)
+class ChannelWrite:
+    """
+    A compare register was written, which matches the counter *ahead_cycles* later.
+    """
+
+    cycle: int
+    ahead_cycles: int
+    in_interrupt: bool
 
 
 @dataclass
@@ -156,6 +169,37 @@ class Trace:
                     starts.append(ClockStart(cycle, timer.prescalers[select - 1], count))
                 running = bool(select)
         return starts
+
+    def channel_sets(
+        self, channel: Register, starts: Sequence[ClockStart]
+    ) -> Iterator[ChannelWrite]:
+        """
+        Yield each write of *channel*, of a timer that runs from the last of *starts* before it on.
+
+        It counts each cycle: at the edge s + n a timer started at s with t shows t + n, and at
+        the edge at which it leaves the value of the channel it sets its flag (datasheet, timing
+        diagram "Setting of OCFnx, no Prescaling"). The high byte, written first, waits in TEMP.
+        """
+        high = 0
+        rows = self._of(Kind.REGISTER)
+        low_address, high_address = channel.address, channel.address + 1
+        rows = rows[(rows["source"] == low_address) | (rows["source"] == high_address)]
+        for cycle, source, value in zip(
+            rows["cycle"].tolist(), rows["source"].tolist(), rows["value"].tolist(), strict=True
+        ):
+            if source == high_address:
+                high = value
+                continue
+            place = bisect_right(starts, cycle, key=lambda start: start.cycle) - 1
+            if place < 0:
+                continue
+            count = starts[place].tcnt + cycle - starts[place].cycle
+            ahead = ((high << 8 | value) - count) % _COUNTER_STATES + 1
+            yield ChannelWrite(cycle, ahead, self._is_in_interrupt(cycle))
+
+    def _is_in_interrupt(self, cycle: int) -> bool:
+        place = bisect_left(self._isr_exits, cycle)
+        return place < len(self._isr_exits) and self._isr_entries[place] < cycle
 
     def millis_ticks(self, vector: int, f_cpu_hz: int) -> list[tuple[int, int]]:
         """

@@ -13,6 +13,7 @@ from stepgen.verify.conformance.needs import refuse
 from stepgen.verify.example import run_example
 from stepgen.verify.firmware import build_firmware
 from stepgen.verify.late_scenarios import late_scenarios
+from stepgen.verify.passed_scenarios import passed_scenarios
 from stepgen.verify.report import MotorFigures, SpecReport
 from stepgen.verify.runner import Outcome, is_asleep, run_scenario
 from stepgen.verify.scenarios import Scenario, standard_scenarios
@@ -88,7 +89,8 @@ def _scenarios(plan: Plan) -> list[tuple[Scenario, bool]]:
     """
     kinds = (standard_scenarios, update_scenarios, timeout_scenarios, sharing_scenarios)
     usual = [(scenario, False) for kind in kinds for scenario in kind(plan)]
-    return [*usual, *((scenario, True) for scenario in late_scenarios(plan))]
+    late = (late_scenarios, passed_scenarios)
+    return [*usual, *((scenario, True) for kind in late for scenario in kind(plan))]
 
 
 def _left_out(

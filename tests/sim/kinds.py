@@ -23,4 +23,7 @@ KINDS = (
     "micro_slider",
     "uno_command_timeout",
     "mega_command_timeouts",
+    "uno_compare_two",
+    "uno_compare_28byj48",
+    "mega_compare_three",
 )

@@ -9,16 +9,19 @@ from pathlib import Path
 
 import pytest
 
-from stepgen.devices import Mcu, Timer8
+from stepgen.devices import Mcu
 from stepgen.library.render import template_dir
-from stepgen.plan.instructions import Gate, Storage
+from stepgen.plan.instructions import Gate, Instruction, Storage
+from stepgen.plan.isr import Motion
+from stepgen.plan.model import TimerPlan
 from stepgen.plan.planner import make_plan
-from stepgen.plan.timings import compare
+from stepgen.plan.timings import compare, wide_compare
 from stepgen.spec import load_spec
 from stepgen.verify.firmware import build_firmware
 from stepgen.verify.late_scenarios import late_scenarios
+from stepgen.verify.passed_scenarios import passed_scenarios
 from stepgen.verify.runner import run_scenario
-from stepgen.verify.scenarios import Scenario
+from stepgen.verify.scenarios import Scenario, standard_scenarios
 from stepgen.verify.toolchain import default_compiler
 from stepgen.verify.verification import verify_spec
 from tests.sim.hazard_trials import batches, sample
@@ -453,6 +456,106 @@ MUTANTS = (
         finding="without masking it",
         spec="uno_servo_beside",
     ),
+    Mutant(
+        "a lap too many (16 bits)",
+        "timings/wide_compare.j2",
+        "(high << 2 | ticks >> 14) - 1",
+        "high << 2 | ticks >> 14",
+        check="a step each 100003 clocks",
+        finding="that nobody asked for",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a lap too few, where the interval is divided (16 bits)",
+        "timings/wide_compare.j2",
+        "if (period >= 2UL * kLapTicks) {",
+        "if (period > 2UL * kLapTicks + 256) {",
+        check="left: interrupts held up for periods and laps",
+        finding="the model says",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a compare register that is one tick off (16 bits)",
+        "timings/wide_compare.j2",
+        "{{ motor.name }}Advance(kLapTicks);",
+        "{{ motor.name }}Advance(kLapTicks + 1);",
+        check="a step each 600011 clocks",
+        finding="no step interrupt for the step due at",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a first interval without its start (16 bits)",
+        "timings/wide_compare.j2",
+        "motion.due = {{ timer.tcnt }};",
+        "motion.due = {{ timer.tcnt }} + 300;",
+        check="single steps both ways",
+        finding="cycles after the call",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a match of before a start that makes a step (16 bits)",
+        "timings/wide_compare.j2",
+        "{{ timer.tifr }} = _BV({{ timer.ocf }});  // a match of before",
+        "// a match of before",
+        check="single steps both ways",
+        finding="that nobody asked for",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a stop that stops the other motor of the timer (16 bits)",
+        "timings/wide_compare.j2",
+        "{{ timer.timsk }} &= ~_BV({{ timer.ocie }});",
+        "{{ timer.timsk }} = 0;",
+        check="all motors at once",
+        finding="no step interrupt for the step due at",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a passed compare that the rare way does not notice (16 bits)",
+        "timings/wide_compare.j2",
+        "if ({{ motor.name }}Passed() && !motion.lapsLeft) {{ motor.name }}Missed();",
+        "",
+        check="left: interrupts held up for periods and laps",
+        finding="the model says",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a passed lap that is waited for (16 bits)",
+        "timings/wide_compare.j2",
+        "  {{ motor.name }}Advance(kLapTicks);\n  {{ motor.name }}Passed();",
+        "  {{ motor.name }}Advance(kLapTicks);",
+        check="left: interrupts held up for periods and laps",
+        finding="no step interrupt for the step due at",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a match that is served twice: by its flag, and at once (16 bits)",
+        "timings/wide_compare.j2",
+        " || ({{ timer.tifr }} & _BV({{ timer.ocf }}))",
+        "",
+        check="left: interrupts held up for many lengths",
+        finding="the model says",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "a count of missed steps that an init leaves (16 bits)",
+        "timings/wide_compare.j2",
+        "motion.missed = 0;",
+        "",
+        check="left: interrupts held up very often",
+        finding="missed at cycle",
+        spec="uno_compare_two",
+    ),
+    Mutant(
+        "TEMP that an interrupt overwrites while a call uses it (16 bits)",
+        "timings/wide_compare.j2",
+        "  motion.due = {{ timer.tcnt }};\n  {{ motor.name }}Advance(motion.next.ticks);",
+        "  sei();\n  motion.due = {{ timer.tcnt }};\n  {{ motor.name }}Advance(motion.next.ticks);"
+        "\n  cli();",
+        check="right: starts while the others run",
+        finding="no step interrupt for the step due at",
+        spec="uno_compare_two",
+    ),
 )
 # Bugs of the way to the step in timing compare: an instruction, and what stands in its place.
 GATE_MUTANTS = {
@@ -463,6 +566,18 @@ GATE_MUTANTS = {
     "a count of overruns without its upper byte": ("sts   %[missed] + 1, r25", "nop"),
     "a match that is served by hand and comes all the same": ("out   %[tifr], r24", "nop"),
     "a last lap that has passed, and the step comes as another": ("ldi   r24, 255", "ldi   r24, 0"),
+}
+
+
+# The same on a 16-bit timer; there each fragment of the interrupt is one.
+WIDE_MUTANTS = {
+    "a passed step that is waited for": ("brpl  13f", "nop"),
+    "a passed step of a boundary that is waited for": ("brpl  16f", "nop"),
+    "an interval that is one tick longer": ("add   r24, r25", "sec $ adc r24, r25"),
+    "an interval without its carry": ("adc   r24, r25", "add   r24, r25"),
+    "the bytes of OCR in the wrong order": ("sts   %[ocrHigh], r24", "nop"),
+    "a run that begins without its steps": ("subi  r24, 255", "subi  r24, 254"),
+    "a limit that is never looked at": ("brpl  16b", "nop"),
 }
 
 
@@ -504,8 +619,8 @@ def test_a_planted_bug_of_late_steps_is_caught(name: str, monkeypatch: pytest.Mo
     old, new = GATE_MUTANTS[name]
     right = compare.gate
 
-    def wrong(timer: Timer8, storage: Storage, mcu: Mcu) -> Gate:
-        made = right(timer, storage, mcu)
+    def wrong(timing: TimerPlan, motion: Motion, storage: Storage, mcu: Mcu) -> Gate:
+        made = right(timing, motion, storage, mcu)
         lines = [replace(one, text=new) if one.text == old else one for one in made.instructions]
         assert tuple(lines) != made.instructions
         return replace(made, instructions=tuple(lines))
@@ -516,5 +631,41 @@ def test_a_planted_bug_of_late_steps_is_caught(name: str, monkeypatch: pytest.Mo
     bench = build_firmware(plan, loaded.document.text, default_compiler()).bench
 
     outcomes = [run_scenario(loaded, plan, bench, one) for one in late_scenarios(plan)]
+
+    assert any(outcome.findings for outcome in outcomes), f"{name} was not noticed"
+
+
+@pytest.mark.parametrize("name", WIDE_MUTANTS)
+def test_a_planted_bug_of_a_compare_channel_is_caught(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """
+    The interrupt sets its channel wrongly, or does not see that it was too late.
+    """
+    old, new = WIDE_MUTANTS[name]
+    right = wide_compare.gate
+
+    def planted(lines: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
+        return tuple(replace(one, text=new) if one.text == old else one for one in lines)
+
+    def wrong(timing: TimerPlan, motion: Motion, storage: Storage, mcu: Mcu) -> Gate:
+        made = right(timing, motion, storage, mcu)
+        bad = replace(
+            made,
+            advance=planted(made.advance),
+            check=planted(made.check),
+            go_on=planted(made.go_on),
+            look=planted(made.look),
+        )
+        assert bad != made
+        return bad
+
+    monkeypatch.setattr(wide_compare, "gate", wrong)
+    loaded = load_spec(SPECS / "uno_compare_two.yaml")
+    plan = make_plan(loaded)
+    bench = build_firmware(plan, loaded.document.text, default_compiler()).bench
+    scenarios = (*passed_scenarios(plan), *standard_scenarios(plan))
+
+    outcomes = (run_scenario(loaded, plan, bench, one) for one in scenarios)
 
     assert any(outcome.findings for outcome in outcomes), f"{name} was not noticed"

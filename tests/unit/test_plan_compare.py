@@ -32,8 +32,9 @@ def test_a_shield_beside_pwm_on_its_timer_lacks_both(planned: Planner) -> None:
     """
     D3 is an enable of the shield and PWM of timer 2: pin and timer are reported.
     """
+    shield = SHIELD.replace("compare", "{kind: compare, timer: 2}")
     with pytest.raises(StepgenError) as error:
-        planned(f"board: uno\nuses: [analogWrite D3]\nmotors:\n  m: {SHIELD}\n")
+        planned(f"board: uno\nuses: [analogWrite D3]\nmotors:\n  m: {shield}\n")
 
     pin, timer = error.value.faults
     assert pin.reason.startswith("pin D3 (PD3) is taken by analogWrite")

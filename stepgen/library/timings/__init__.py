@@ -42,6 +42,6 @@ def timer_view(motor: MotorPlan) -> TimerView:
     """
     Return what the partial of the timing of *motor* prints.
     """
-    module = import_module(f"{__name__}.{motor.timing.kind.replace('-', '_')}")
+    module = import_module(f"{__name__}.{motor.timing.module}")
     view: TimerView = module.view(motor)
     return view

@@ -21,5 +21,6 @@ def plan(spec: Constant, *, timed: bool) -> Motion:
         thinking_cycles=_TIMED_CYCLES if timed else 0,
         limit_cycles=0,
         masked_cycles=285 + (_TIMED_CALL_CYCLES if timed else 0),
+        can_go_on=not timed,
         setting_cycles=24,
     )

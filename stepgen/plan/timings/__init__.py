@@ -8,19 +8,18 @@ from typing import Any
 from stepgen.devices import Board, Mcu
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Gate, Storage
-from stepgen.plan.model import Cadence, Setting, TimerPlan
+from stepgen.plan.isr import Motion
+from stepgen.plan.model import Cadence, Left, Setting, TimerPlan
 from stepgen.spec.base import KindModel
 
 
-def plan_timing(
-    spec: KindModel, board: Board, free: tuple[int, ...], faults: Faults
-) -> TimerPlan | None:
+def plan_timing(spec: KindModel, board: Board, left: Left, faults: Faults) -> TimerPlan | None:
     """
-    Return the timer that *spec* asks for, or the first of the *free* ones if it names none.
+    Return the timer that *spec* asks for, or the first of those *left* if it names none.
 
     Returns None after reporting why it cannot be.
     """
-    plan: TimerPlan | None = _module(spec.kind).plan(spec, board, free, faults)
+    plan: TimerPlan | None = _module(spec.kind).plan(spec, board, left, faults)
     return plan
 
 
@@ -28,15 +27,15 @@ def way_out(timing: TimerPlan, board: Board, free: tuple[int, ...]) -> str:
     """
     Return what a motor can take in place of the timer of *timing*; *free* are those left.
     """
-    words: str = _module(timing.kind).way_out(board, free)
+    words: str = _module(timing.module).way_out(board, free)
     return words
 
 
-def plan_gate(timing: TimerPlan, storage: Storage, mcu: Mcu) -> Gate:
+def plan_gate(timing: TimerPlan, motion: Motion, storage: Storage, mcu: Mcu) -> Gate:
     """
-    Return what *timing* puts before the step in the interrupt.
+    Return what *timing* puts into the interrupt beside the step, for *motion*.
     """
-    gate: Gate = _module(timing.kind).gate(timing.timer, storage, mcu)
+    gate: Gate = _module(timing.module).gate(timing, motion, storage, mcu)
     return gate
 
 
@@ -44,7 +43,7 @@ def plan_cadence(timing: TimerPlan, period_cycles: int) -> Cadence:
     """
     Return how often the interrupt of *timing* comes with *period_cycles* between two steps.
     """
-    cadence: Cadence = _module(timing.kind).cadence(period_cycles)
+    cadence: Cadence = _module(timing.module).cadence(period_cycles)
     return cadence
 
 
@@ -52,7 +51,7 @@ def plan_setting(timing: TimerPlan, period_cycles: int) -> Setting:
     """
     Return what *timing* makes of *period_cycles* between two steps: its prescaler and its ticks.
     """
-    setting: Setting = _module(timing.kind).choose_setting(period_cycles)
+    setting: Setting = _module(timing.module).choose_setting(period_cycles)
     return setting
 
 

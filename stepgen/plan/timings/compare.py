@@ -1,6 +1,8 @@
 """
 Compare: timer 2 runs through with a prescaler of 8, and compare channel A counts its laps.
 
+What it is on a 16-bit timer says `stepgen.plan.timings.wide_compare`.
+
 The timer is started when the motor starts, and neither stopped nor set before it rests: a change
 of speed is one of numbers only. An interval of n ticks is first + 256 * laps + last, where first
 and last are half of what exceeds the laps, each 128 to 256. At a step OCR2A goes on by *first*;
@@ -18,10 +20,14 @@ Source: ATmega328P datasheet, "8-bit Timer/Counter2 with PWM and Asynchronous Op
 Mode and Output Compare Unit.
 """
 
-from stepgen.devices import Board
-from stepgen.plan.compare_gate import PRESCALER, gate
+from stepgen.devices import Board, Mcu, Timer8
+from stepgen.plan import compare_gate
+from stepgen.plan.compare_gate import PRESCALER
 from stepgen.plan.faults import Faults
-from stepgen.plan.model import Cadence, Setting, TimerPlan
+from stepgen.plan.instructions import Gate, Storage
+from stepgen.plan.isr import Motion
+from stepgen.plan.model import Cadence, Left, Setting, TimerPlan
+from stepgen.plan.timings import wide_compare
 from stepgen.spec.timings.compare import Compare
 
 __all__ = ["PRESCALER", "cadence", "choose_setting", "gate", "offer", "plan", "way_out"]
@@ -39,23 +45,21 @@ SMALLEST_PERIOD_CYCLES = LAP_CYCLES
 LARGEST_PERIOD_CYCLES = 65_535 * 1024  # that of fast PWM, so that a sketch can change over
 
 
-def plan(spec: Compare, board: Board, free: tuple[int, ...], faults: Faults) -> TimerPlan | None:
+def plan(spec: Compare, board: Board, left: Left, faults: Faults) -> TimerPlan | None:
     """
-    Return the 8-bit timer that *spec* asks for, or the first of the *free* ones.
+    Return the timer that *spec* asks for, or of those *left* timer 2, or a 16-bit one.
     """
-    timers = [timer.number for timer in board.mcu.timers8]
-    names = " or ".join(str(number) for number in timers)
-    narrow = [number for number in free if number in timers]
-    number = next(iter((*narrow, *timers)), None) if spec.timer is None else spec.timer
-    timer = None if number is None else board.mcu.timer8(number)
-    if not timers:
-        faults.at("kind").report(
-            f"the {board.title} has no 8-bit timer beside the core's; {way_out(board, free)}"
-        )
-        return None
+    narrow = [timer.number for timer in board.mcu.timers8]
+    wanted = spec.timer
+    if wanted is None:
+        free = [number for number in narrow if number in left.free]
+        wanted = next(iter((*free, *wide_compare.with_channels(board, left), *narrow)), None)
+    timer = None if wanted is None else board.mcu.timer8(wanted)
     if timer is None:
-        faults.at("timer").report(
-            f"compare does not run on timer {number} of the {board.title}, only on timer {names}"
+        return wide_compare.plan_wide(wanted, spec.channel, board, left, faults)
+    if spec.channel not in {None, "A"}:
+        faults.at("channel").report(
+            f"timer {timer.number} makes the steps of one motor, with channel A; take `channel: A`"
         )
         return None
     return TimerPlan(
@@ -94,6 +98,15 @@ def way_out(board: Board, free: tuple[int, ...]) -> str:
     if numbers:
         return f"take `timing: fast-pwm` on timer {' or '.join(numbers)}"
     return "take a larger board, since no other timer is left on this one"
+
+
+def gate(timing: TimerPlan, _motion: Motion, storage: Storage, mcu: Mcu) -> Gate:
+    """
+    Return the count of laps, which each interrupt passes on its way to the step.
+    """
+    if not isinstance(timing.timer, Timer8):
+        raise TypeError(f"timer {timing.timer.number} has not 8 bits")
+    return compare_gate.gate(timing.timer, storage, mcu)
 
 
 def cadence(_period_cycles: int) -> Cadence:

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from stepgen.devices import Board, Timer16
 from stepgen.plan.faults import Faults
-from stepgen.plan.model import TimerPlan
+from stepgen.plan.model import Left, TimerPlan
 from stepgen.plan.timings import fast_pwm
 from stepgen.plan.timings.fast_pwm import cadence, choose_setting, gate, way_out
 from stepgen.spec.timings.ctc import Ctc
@@ -20,11 +20,11 @@ from stepgen.spec.timings.ctc import Ctc
 __all__ = ["cadence", "choose_setting", "gate", "plan", "way_out"]
 
 
-def plan(spec: Ctc, board: Board, free: tuple[int, ...], faults: Faults) -> TimerPlan | None:
+def plan(spec: Ctc, board: Board, left: Left, faults: Faults) -> TimerPlan | None:
     """
     Return the 16-bit timer that *spec* asks for, or the first of the *free* ones.
     """
-    found = fast_pwm.plan_wide(spec.kind, spec.timer, board, free, faults)
+    found = fast_pwm.plan_wide(spec.kind, spec.timer, board, left.free, faults)
     if found is None or not isinstance(found.timer, Timer16):
         return None
     return replace(

@@ -4,10 +4,11 @@ Fast PWM, mode 15: TOP is OCRnA, double-buffered; the overflow interrupt makes t
 Source: ATmega328P datasheet, 16-bit Timer/Counter1, Fast PWM mode; system 1, chapter 6.
 """
 
-from stepgen.devices import Board, Mcu, Timer16
+from stepgen.devices import Board, Mcu
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Gate, Storage
-from stepgen.plan.model import Cadence, MotorPlan, Setting, TimerPlan
+from stepgen.plan.isr import Motion
+from stepgen.plan.model import Cadence, Left, MotorPlan, Setting, TimerPlan
 from stepgen.plan.timings import compare
 from stepgen.spec.timings.fast_pwm import FastPwm
 
@@ -18,11 +19,11 @@ LARGEST_TICKS = 65_535
 LARGEST_PERIOD_CYCLES = LARGEST_TICKS * PRESCALERS[-1]
 
 
-def plan(spec: FastPwm, board: Board, free: tuple[int, ...], faults: Faults) -> TimerPlan | None:
+def plan(spec: FastPwm, board: Board, left: Left, faults: Faults) -> TimerPlan | None:
     """
-    Return the 16-bit timer that *spec* asks for, or the first of the *free* ones.
+    Return the 16-bit timer that *spec* asks for, or the first of those *left*.
     """
-    return plan_wide(spec.kind, spec.timer, board, free, faults)
+    return plan_wide(spec.kind, spec.timer, board, left.free, faults)
 
 
 def plan_wide(
@@ -76,7 +77,7 @@ def _wide(board: Board, free: tuple[int, ...]) -> list[int]:
     return [number for number in free if board.mcu.timer16(number)]
 
 
-def gate(_timer: Timer16, _storage: Storage, _mcu: Mcu) -> Gate:
+def gate(_timing: TimerPlan, _motion: Motion, _storage: Storage, _mcu: Mcu) -> Gate:
     """
     Return no gate: each interrupt is a step.
     """

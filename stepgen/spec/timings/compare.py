@@ -1,20 +1,30 @@
 """
-Compare: the 8-bit timer 2 runs through, and a compare channel counts its laps between two steps.
+Compare: a timer runs through, and a compare channel makes the steps of one motor.
 """
 
-from typing import Literal
+from typing import Literal, Self
+
+from pydantic import model_validator
 
 from stepgen.spec.base import KindModel
 
 
 class Compare(KindModel):
     """
-    Timing ``compare``: the 8-bit timer 2 for one motor; ``timer`` may say so.
+    Timing ``compare``: a channel of a 16-bit timer, which other motors share, or all of timer 2.
     """
 
     kind: Literal["compare"] = "compare"
     timer: int | None = None
-    """2, the only 8-bit timer that there is."""
+    """The number of a timer: 2, which has 8 bits, or a 16-bit one. Without it, the first free."""
+    channel: Literal["A", "B", "C"] | None = None
+    """Its compare channel; without it the first one that no other motor has."""
+
+    @model_validator(mode="after")
+    def _a_channel_is_one_of_a_timer(self) -> Self:
+        if self.channel and self.timer is None:
+            raise ValueError("a channel belongs to a timer; name it with `timer`")
+        return self
 
 
 SPEC = Compare

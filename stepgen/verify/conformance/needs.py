@@ -47,6 +47,7 @@ OF_TIMING: Mapping[str, Sequence[str]] = {
         *("ctc-wrap", "count-kept"),
     ),
     "compare": ("timer2-compare", "timer2-moves", "flag-write"),
+    "wide-compare": ("normal-compare", "two-channels", "flag-write"),
 }
 OF_KERNEL: Mapping[str, Sequence[str]] = {
     "toggle": ("pin-writes", "pin-writes-1280", "pin-writes-2560"),
@@ -64,7 +65,9 @@ def needed_points(plan: Plan) -> tuple[Point, ...]:
     chip = plan.board.mcu.name
     names = {*ALWAYS, *OF_CHIP[chip]}
     for motor in plan.motors:
-        names.update(OF_TIMING[motor.timing.kind], OF_KERNEL[motor.kernel.kind])
+        names.update(
+            OF_TIMING[motor.timing.form or motor.timing.kind], OF_KERNEL[motor.kernel.kind]
+        )
     return tuple(one for one in points() if one.name in names and one.mcu in {UNO_CHIP, chip})
 
 

@@ -10,7 +10,7 @@ from stepgen.verify.events import Kind
 
 # Data addresses, chapter 31 "Register Summary".
 TCCR1B, TCNT1L, OCR1AL, TCCR2B = 0x81, 0x84, 0x88, 0xB1
-TIMER2_COMPA = 7  # table 12-6, number less one
+TIMER2_COMPA, TIMER1_COMPA, TIMER1_COMPB = 7, 11, 12  # table 12-6, number less one
 # WGM13:0 and CS12:0, tables 16-4 and 16-5.
 CTC, CTC_ICR, FAST_ICR, FAST = 4, 12, 14, 15
 CLOCKS = {1: 1, 8: 2, 64: 3, 256: 4, 1024: 5}
@@ -180,6 +180,19 @@ def normal_compare(lab: Lab) -> Iterator[str]:
         machine.run_until(80_000)
         seen = gaps(cycles(machine, Kind.RAISE))[:5]
         yield from lab.differ("cycles between flags", [1000, 1000, 1000, 65_536 + 1000, 1000], seen)
+
+
+@point("two-channels", "mode 0: two channels are exact, whoever uses TEMP between", "16.3, 16.9.1")
+def two_channels(lab: Lab) -> Iterator[str]:
+    """
+    See OCR1A and OCR1B move on by 700 and 900 for several laps, each on its own.
+    """
+    steps = {TIMER1_COMPA: 700, TIMER1_COMPB: 900}
+    with lab.running("channels", STEP_A=700, STEP_B=900) as machine:
+        machine.run_until(200_000)
+        for vector, step in steps.items():
+            seen = gaps(cycles(machine, Kind.RAISE, vector))[:200]
+            yield from lab.differ(f"cycles between flags of {vector}", [step] * 200, seen)
 
 
 @point("compare-flag-edge", "The compare flag comes with the tick after the match", "16.9.1")

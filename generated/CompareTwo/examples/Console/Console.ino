@@ -1,0 +1,198 @@
+// left and right by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and
+// type help.
+//
+// The motors turn while the sketch reads and answers; nothing in it waits.
+// The spec's `uses` does not name Serial: the highest rate is proven without its interrupts. Name
+// it there before going to that limit.
+
+#include <CompareTwo.h>
+
+static const char kHelp[] PROGMEM =
+    "MOTOR speed 500    turn at 500 steps/s, backward with -500\n"
+    "MOTOR steps 2000   make 2000 steps at that speed, or -2000\n"
+    "MOTOR stop         at once, coils off; stop alone: all\n"
+    "MOTOR hold         coils on, while it stands\n"
+    "MOTOR release      coils off, while it stands\n"
+    "MOTOR status       does it run, and where is it\n"
+    "status             the same of all; MOTOR is a name there\n";
+
+// What can be asked of a motor.
+struct Motor {
+  const char *name;
+  int8_t (*setSpeed)(uint8_t control, uint32_t interval, uint32_t limit);
+  uint8_t (*readStatus)();
+  int32_t (*readPosition)();
+  int8_t (*hold)();     // null where nothing switches the current
+  int8_t (*release)();  // the same
+  int8_t (*ramp)();   // null where the speed cannot change by itself
+  uint32_t interval;  // I/O clocks between two steps of the next motion
+};
+
+static int8_t leftStart(uint8_t control, uint32_t interval, uint32_t limit) {
+  return leftSetSpeed(control, interval, limit);
+}
+
+static int8_t rightStart(uint8_t control, uint32_t interval, uint32_t limit) {
+  return rightSetSpeed(control, interval, limit);
+}
+
+static Motor motors[] = {
+    {"left", leftStart, leftReadStatus, leftReadPosition,
+     leftHold, leftRelease, nullptr, 0},
+    {"right", rightStart, rightReadStatus, rightReadPosition,
+     rightHold, rightRelease, nullptr, 0},
+};
+constexpr uint8_t kMotors = sizeof(motors) / sizeof(motors[0]);
+
+constexpr int kRoom = 62;  // no line that is printed is longer; the core's buffer holds 63
+
+static char line[64];                   // what was typed; more than fits is cut off
+static const char *helpLeft = nullptr;  // what of the help is still to be printed
+static uint8_t shown = kMotors;         // the motor whose status is printed next, or past all
+
+// Prints the next line of the help; behind the last one there is none.
+static void printHelpLine() {
+  char letter;
+  do {
+    letter = pgm_read_byte(helpLeft++);
+    Serial.write(letter);
+  } while (letter != '\n');
+  if (!pgm_read_byte(helpLeft)) helpLeft = nullptr;
+}
+
+// Collects what is typed, without waiting for it; tells whether a line is complete.
+static bool readLine() {
+  static uint8_t length = 0;
+  while (Serial.available()) {
+    const char letter = Serial.read();
+    if (letter == '\n' || letter == '\r') {
+      line[length] = '\0';
+      length = 0;
+      return true;
+    }
+    if (length < sizeof(line) - 1) line[length++] = letter;
+  }
+  return false;
+}
+
+// Tells whether the word is this one.
+static bool is(const char *word, const __FlashStringHelper *known) {
+  return strcmp_P(word, reinterpret_cast<const char *>(known)) == 0;
+}
+
+// Reads a whole number that is not 0; tells whether there is one and nothing else.
+static bool readNumber(const char *text, int32_t &number) {
+  if (!text) return false;
+  char *end;
+  number = strtol(text, &end, 10);
+  return end != text && *end == '\0' && number != 0;
+}
+
+// Without its sign.
+static uint32_t magnitude(int32_t number) {
+  return number < 0 ? -static_cast<uint32_t>(number) : number;
+}
+
+// The control byte for driving that way.
+static uint8_t controlFor(int32_t number) {
+  return number < 0 ? MOTOR_CTRL_DRV_EN | MOTOR_CTRL_DIRECTION : MOTOR_CTRL_DRV_EN;
+}
+
+// The I/O clocks between two steps at that many steps per second; 1, which is refused, for more
+// than motorTimerCalcPerSecond() takes.
+static uint32_t intervalFor(int32_t speed) {
+  return magnitude(speed) > 65535 ? 1 : motorTimerCalcPerSecond(magnitude(speed));
+}
+
+// Says what the library answered.
+static void answer(int8_t result) {
+  if (result == MOTOR_ERROR_TOO_FAST) {
+    Serial.print(F("too fast: at most "));
+    Serial.println(F_CPU / MOTOR_MIN_TOP);
+  } else if (result == MOTOR_ERROR_RUNNING) {
+    Serial.println(F("not while it runs"));
+  } else {
+    Serial.println(result ? F("refused") : F("ok"));
+  }
+}
+
+// Says whether a motor runs, and where it is.
+static void printStatus(const Motor &motor) {
+  const bool rests = motor.readStatus() & MOTOR_STAT_REACHED;
+  Serial.print(motor.name);
+  Serial.print(rests ? F(" at rest, at step ") : F(" running, at step "));
+  Serial.println(motor.readPosition());
+}
+
+// Does what the words behind the name of a motor say.
+static void obey(Motor &motor, const char *word, const char *rest) {
+  int32_t number = 0;
+  const bool numbered = readNumber(rest, number);
+  if (is(word, F("speed")) && numbered) {
+    const int8_t result = motor.setSpeed(controlFor(number), intervalFor(number), 0);
+    if (result == 0) motor.interval = intervalFor(number);
+    answer(result);
+  } else if (is(word, F("steps")) && numbered) {
+    answer(motor.setSpeed(controlFor(number), motor.interval, magnitude(number)));
+  } else if (is(word, F("speed")) || is(word, F("steps"))) {
+    Serial.println(F("that needs a number, and not 0"));
+  } else if (is(word, F("ramp")) && motor.ramp) {
+    answer(motor.ramp());
+  } else if (is(word, F("stop"))) {
+    answer(motor.setSpeed(0, 0, 0));
+  } else if (is(word, F("hold")) && motor.hold) {
+    answer(motor.hold());
+  } else if (is(word, F("release")) && motor.release) {
+    answer(motor.release());
+  } else if (is(word, F("status"))) {
+    printStatus(motor);
+  } else {
+    Serial.println(F("what? type help"));
+  }
+}
+
+// Stops every motor.
+static void stopAll() {
+  for (Motor &motor : motors) motor.setSpeed(0, 0, 0);
+}
+
+// Does what the line says.
+static void obeyLine() {
+  const char *first = strtok(line, " ");
+  const char *word = strtok(nullptr, " ");
+  const char *rest = strtok(nullptr, "");
+  if (!first) return;
+  for (Motor &motor : motors) {
+    if (word && strcmp(first, motor.name) == 0) return obey(motor, word, rest);
+  }
+  if (is(first, F("stop")) && !word) {
+    stopAll();
+    answer(0);
+  } else if (is(first, F("status")) && !word) {
+    shown = 0;
+  } else if (is(first, F("help")) && !word) {
+    helpLeft = kHelp;
+  } else {
+    Serial.println(F("what? type help"));
+  }
+}
+
+void setup() {
+  Serial.begin(115200);
+  leftShieldInit();
+  rightShieldInit();
+  stopAll();  // from here on each status says that the motor is at rest
+  for (Motor &motor : motors) motor.interval = motorTimerCalcPerSecond(200);
+  Serial.println(F("type help"));
+}
+
+void loop() {
+  if (Serial.availableForWrite() < kRoom) return;  // the last line is still on its way
+  if (helpLeft) {
+    printHelpLine();
+  } else if (shown < kMotors) {
+    printStatus(motors[shown++]);
+  } else if (readLine()) {
+    obeyLine();
+  }
+}
