@@ -26,5 +26,5 @@ def plan(spec: UpdateEvents, *, timed: bool) -> Motion:
         masked_cycles=520 + (_TIMED_CALL_CYCLES if timed else 0),
         dumps=spec.debug,
         setting_cycles=170,
-        masked_setting_cycles=85,
+        masked_setting_cycles=75,
     )
