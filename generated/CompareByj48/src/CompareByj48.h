@@ -64,6 +64,11 @@ uint32_t motorTimerGetIOclocksPerSecond();
 // The virtual timer TOP for a speed in steps per second; 0 for 0, which stops the motor.
 uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 
+// Every function may be called from setup() and loop(), from a callback, and from an interrupt of
+// the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
+// sketch: a call takes at most 1000 clocks there (motorTimerUpdateCheck() and the callbacks that it
+// makes: longer, by those), and counts as a stretch with interrupts off.
+
 // ---- motor: four switches (ULN2003 and the like), half steps, timer 1 ----
 //
 //   signal    pin   port bit
@@ -84,7 +89,9 @@ constexpr uint32_t motorStepsForTurns(uint16_t turns) {
   return static_cast<uint32_t>((turns * 1650688ULL + 202) / 405);
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void motorShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

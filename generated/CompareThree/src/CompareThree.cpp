@@ -41,8 +41,8 @@ constexpr uint8_t kCoast = 0x02;    // the last step is made, the coils are stil
 constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
-constexpr uint8_t kLaps = 0x20;     // a millisecond limit ends after more laps of 16384 ms
 constexpr uint8_t kClock = 0x20;    // look if a moment has come; the interrupt's bit 5
+constexpr uint8_t kLaps = 0x40;     // a millisecond limit ends after more laps of 16384 ms
 constexpr uint8_t kLimited = 0x40;  // a limit in milliseconds
 constexpr uint8_t kEnded = 0x80;    // at an end point, not just stopped
 

@@ -57,7 +57,7 @@ constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops
 
 // The range of a virtual timer TOP: I/O clocks between two steps.
-constexpr uint32_t MOTOR_MIN_TOP = 1471UL;  // 10876 steps/s
+constexpr uint32_t MOTOR_MIN_TOP = 1472UL;  // 10869 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 4.19 s
 
 // I/O clocks in a second: 16 MHz, divided as CLKPR says at the moment. After a
@@ -66,6 +66,11 @@ uint32_t motorTimerGetIOclocksPerSecond();
 
 // The virtual timer TOP for a speed in steps per second; 0 for 0, which stops the motor.
 uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
+
+// Every function may be called from setup() and loop(), from a callback, and from an interrupt of
+// the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
+// sketch: a call takes at most 1000 clocks there (zTimerUpdateCheck() and the callbacks that it
+// makes: longer, by those), and counts as a stretch with interrupts off.
 
 // ---- x: A4988, 1/16 steps, timer 5 ----
 //
@@ -81,7 +86,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // others stay where they are due. But after more than 32000 clocks with interrupts off a step, and
 // all that follow it, can come 65536 clocks late, and nothing tells.
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void xShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -132,7 +139,9 @@ int8_t xRelease();
 // others stay where they are due. But after more than 32000 clocks with interrupts off a step, and
 // all that follow it, can come 65536 clocks late, and nothing tells.
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void yShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -182,7 +191,9 @@ int8_t yRelease();
 // others stay where they are due. But after more than 32000 clocks with interrupts off a step, and
 // all that follow it, can come 65536 clocks late, and nothing tells.
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void zShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

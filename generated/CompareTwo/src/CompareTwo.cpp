@@ -41,7 +41,7 @@ constexpr uint8_t kCoast = 0x02;    // the last step is made, the coils are stil
 constexpr uint8_t kEndless = 0x04;  // no limit in steps
 constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
-constexpr uint8_t kLaps = 0x20;     // a millisecond limit ends after more laps of 16384 ms
+constexpr uint8_t kLaps = 0x40;     // a millisecond limit ends after more laps of 16384 ms
 
 // An interval of a timer that runs through: its clocks; where these are 32768 or more, those until
 // the first lap, 16384 to 32767, and how many laps of 16384 clocks follow.

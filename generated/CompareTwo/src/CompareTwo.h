@@ -56,6 +56,10 @@ uint32_t motorTimerGetIOclocksPerSecond();
 // The virtual timer TOP for a speed in steps per second; 0 for 0, which stops the motor.
 uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 
+// Every function may be called from setup() and loop(), from a callback, and from an interrupt of
+// the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
+// sketch: a call takes at most 1000 clocks there, and counts as a stretch with interrupts off.
+
 // ---- left: A4988, 1/16 steps, timer 1 ----
 //
 //   signal    pin   port bit
@@ -75,7 +79,9 @@ constexpr uint32_t leftStepsForTurns(uint16_t turns) {
   return turns * 3200UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void leftShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -131,7 +137,9 @@ constexpr uint32_t rightStepsForTurns(uint16_t turns) {
   return turns * 3200UL;
 }
 
-// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup().
+// Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
+// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
+// such as an ENABLE, needs a resistor.
 void rightShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -15,7 +15,13 @@ from stepgen.reference.sequences import Pattern
 from stepgen.reference.stimuli import SetSpeed
 from stepgen.reference.updates import Updates
 from stepgen.reference.verdict import stops, verdict
-from stepgen.verify.proof.library import PRESCALERS, Library, interval_ticks, right_choice
+from stepgen.verify.proof.library import (
+    PRESCALERS,
+    Library,
+    interval_ticks,
+    right_choice,
+    span_ticks,
+)
 from stepgen.verify.proof.memory import CLOCK
 from stepgen.verify.proof.numbers import Number, term, wide
 from stepgen.verify.proof.paths import Paths
@@ -49,7 +55,7 @@ def choice(library: Library, paths: Paths, period: Any, parts: Any) -> Iterator[
     """
     Yield what must hold of the *parts* that are chosen for *period*.
     """
-    timing: TimingKind = "fast-pwm" if ("select",) in parts else "compare"
+    timing = _timing(parts)
     facts = MotorFacts((), Pattern((), ()), library.min_top, "hold", timing=timing)
     number: Any = Number(wide(period), paths)
     model = facts.setting(number)
@@ -58,9 +64,17 @@ def choice(library: Library, paths: Paths, period: Any, parts: Any) -> Iterator[
         (select,) = (bits for bits, by in PRESCALERS.items() if by == model.prescaler)
         yield "the prescaler is the model's", parts[("select",)] == select
         yield "TOP is the model's", wide(parts[("top",)]) == ticks - 1
-    else:
+    elif timing == "compare":
         yield "the laps make up the model's ticks", interval_ticks(parts) == ticks
+    else:
+        yield "the laps make up the model's clocks", span_ticks(parts) == ticks
     yield "the choice is as all others take it", right_choice(parts, period)
+
+
+def _timing(parts: Any) -> TimingKind:  # noqa: ANN401
+    if ("select",) in parts:
+        return "fast-pwm"
+    return "compare" if ("first",) in parts else "wide-compare"
 
 
 def set_speed(way: Way) -> Iterator[tuple[str, Any]]:
@@ -153,7 +167,9 @@ def boundary(way: Way) -> Iterator[tuple[str, Any]]:
     """
     before, after = way.before, way.after
     itself = way.machine.calls.count(f"{before.motor}Step")
-    by_assembly = z3.And(before.entered_count == 0, z3.Not(before.is_in(THINK)))
+    by_assembly = z3.And(
+        before.entered_count == 0, z3.Not(before.is_in(THINK)), z3.Not(before.is_lapping)
+    )
     yield from position(way, itself + z3.If(by_assembly, NO_STEP + 1, NO_STEP))
     silent = z3.BoolVal(val=False)
     if before.is_timed:
@@ -165,7 +181,8 @@ def boundary(way: Way) -> Iterator[tuple[str, Any]]:
     if before.has("eventAt"):
         yield from _wakes(way, silent)
         return
-    running, limited = z3.And(before.is_in(RUNNING), z3.Not(silent)), before.is_in(THINK)
+    moves = z3.And(before.is_in(RUNNING), z3.Not(before.is_lapping))
+    running, limited = z3.And(moves, z3.Not(silent)), before.is_in(THINK)
     ended = z3.Not(after.is_in(RUNNING))
     until = before.to_millis_end
     yield (

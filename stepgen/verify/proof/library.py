@@ -22,10 +22,14 @@ _CONSTANT = re.compile(r"^constexpr \w+ (\w+) = (\w+?)U?L?;", re.MULTILINE)
 _STEPS_FOR = re.compile(
     r"^constexpr uint32_t (\w+StepsFor(?:Turns|Micrometres))\((\w+) \w+\)", re.MULTILINE
 )
-_CHOOSE = ("chooseSetting", "chooseInterval")
+_CHOOSE = ("chooseSetting", "chooseInterval", "chooseSpan")
 
 PRESCALERS = {1: 1, 2: 8, 3: 64, 4: 256, 5: 1024}
 """What the clock select bits divide by; section "16-bit Timer/Counter", table "Clock Select"."""
+
+
+LAP_TICKS = 1 << 14
+"""How long a lap of a compare channel of a 16-bit timer is."""
 
 
 @dataclass(frozen=True)
@@ -154,6 +158,10 @@ def right_choice(chosen: dict[Place, Any], period: Any) -> Any:  # noqa: ANN401
             for bits, prescaler in PRESCALERS.items()
         ]
         return z3.Or(*ways)
+    if ("ticks",) in chosen:
+        ticks, laps = wide(chosen[("ticks",)]), wide(chosen[("laps",)])
+        single = z3.And(z3.Implies(laps != 0, ticks >= LAP_TICKS), ticks < 2 * LAP_TICKS)
+        return z3.And(span_ticks(chosen) == number, single)
     total = interval_ticks(chosen)
     matches = z3.And(z3.UGE(chosen[("first",)], 128), z3.ULE(chosen[("lapsHigh",)], 127))
     return z3.And(total == z3.LShR(number, 3), matches)
@@ -178,3 +186,10 @@ def interval_ticks(parts: dict[Place, Any]) -> Any:  # noqa: ANN401
     )
     matches = z3.If(laps == 0, laps + 256, laps) + 256 * high
     return first + 256 * (matches - 1) + z3.If(last == 0, last + 256, last)
+
+
+def span_ticks(parts: dict[Place, Any]) -> Any:  # noqa: ANN401
+    """
+    Return the clocks of an interval of a compare channel: those to its first match, and laps.
+    """
+    return wide(parts[("ticks",)]) + LAP_TICKS * wide(parts[("laps",)])

@@ -13,7 +13,10 @@ _TIMES = "a difference of two times, or a time a while ahead, of a clock that wr
 _LOW_BYTES = "the lower bits are what is wanted"
 _METRIC = "it wraps where the header says; that it is the position up to there is proven"
 _PARTS = "the parts make up the whole, which is proven of the interval or of what is left"
+_COUNTS = "counts of a timer, which wraps; no match is as much as half a round ahead: proven"
 _LAPS = "0 laps stand for 256; without kLaps none is counted; that they make up the limit is proven"
+
+_CHANNEL, _FLAGS = re.compile(r"\b(OC[FR])\d[ABC]\b"), re.compile(r"\bTIFR\d\b")
 
 MEANT = {
     # Positions and what is left.
@@ -55,6 +58,16 @@ MEANT = {
     "const uint8_t rest = ticks;": _LOW_BYTES,
     "return {first, static_cast<uint8_t>(rest - first), static_cast<uint8_t>(laps), "
     "static_cast<uint8_t>((laps - 1) >> 8)};": _PARTS,
+    # A compare channel of a 16-bit timer.
+    "uint16_t ticks = period;": _PARTS,
+    "laps = (high << 2 | ticks >> 14) - 1;": _PARTS,
+    "const uint16_t due = motion.due + ticks;": _COUNTS,
+    "if (static_cast<int16_t>(now - motion.due) < 0 || (TIFR1 & _BV(OCF1A))) "
+    "return false;": _COUNTS,
+    "OCR1A = now + kSoonTicks;": _COUNTS,
+    "++motion.missed;": "it wraps at 16 bits, as the header says",
+    "motion.rest += --run;": "the carry is taken in the next line",
+    "if (motion.rest < run) ++motion.restHigh;": _ENDLESS,
 }
 
 
@@ -77,9 +90,9 @@ def is_meant(text: str, motors: tuple[str, ...], used: set[str]) -> bool:
 
 def for_motor(text: str, motors: tuple[str, ...]) -> str:
     """
-    Return *text* of a library of *motors* as it were for one called ``motor``.
+    Return *text* of a library of *motors* as it were for one called ``motor``, on channel 1A.
     """
     for motor in motors:
         for after in _NAMES:
             text = re.sub(rf"\b{motor}{after}\b", f"motor{after}", text)
-    return text
+    return _FLAGS.sub("TIFR1", _CHANNEL.sub(r"\g<1>1A", text))

@@ -110,6 +110,13 @@ class State:
         return z3.And(self.is_in(RUNNING), z3.Not(self.is_in(ENDLESS)))
 
     @property
+    def is_lapping(self) -> Any:  # noqa: ANN401
+        """
+        Tell whether matches of the present interval come before the one that is a step.
+        """
+        return self.of("lapsLeft") != 0 if self.has("lapsLeft") else z3.BoolVal(val=False)
+
+    @property
     def may_coast(self) -> bool:
         """
         Tell whether the motor keeps its coils on for an interval after its last step.
@@ -182,7 +189,10 @@ def invariant(state: State) -> Claims:
         coasts = z3.Not(z3.And(_coasts(state), state.is_in(CLOCKED)))
         claims["it does not while it coasts"] = coasts
     claims |= _of_ring(state) | _of_coasting(state)
-    claims |= _of_fast_pwm(state) if state.has("next", "top") else _of_compare(state)
+    if state.has("next", "top"):
+        claims |= _of_fast_pwm(state)
+    else:
+        claims |= _of_channel(state) if state.has("lapsLeft") else _of_compare(state)
     return claims | (_of_events(state) if state.has("eventAt") else _of_constant(state))
 
 
@@ -252,6 +262,17 @@ def _of_compare(state: State) -> Claims:
         "laps are counted down to below 0, and matches are 128 ticks apart": z3.Implies(
             running, fits
         )
+    }
+
+
+def _of_channel(state: State) -> Claims:
+    moves = z3.Or(state.is_in(RUNNING), _coasts(state))
+    ticks, laps = state.of("next", "ticks"), state.of("next", "laps")
+    fits = z3.And(z3.ULT(ticks, 1 << 15), z3.Implies(laps != 0, z3.UGE(ticks, 1 << 14)))
+    lapping = z3.And(moves, state.is_lapping)
+    return {
+        "a match comes before the timer has gone half round": z3.Implies(moves, fits),
+        "no step is counted down while laps are": z3.Implies(lapping, state.count == 1),
     }
 
 
