@@ -217,7 +217,7 @@ void __vector_motor_boundary_late() {
 }
 
 // Timer 1 compare match A: one step, 83 cycles from the interrupt's response to RETI, 102 with a
-// look at the clock; at most 864 when it goes on in __vector_motor_boundary. The wires change 38
+// look at the clock; at most 879 when it goes on in __vector_motor_boundary. The wires change 38
 // cycles after the match (71 before a boundary). In an interval of 32768 clocks or more it counts
 // laps of 16384 clocks there, too. It writes port B and nothing else that the sketch can see.
 // Behind each instruction stand its cycles.

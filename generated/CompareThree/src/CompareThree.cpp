@@ -1122,7 +1122,7 @@ void __vector_z_boundary_late() {
 }
 
 // Timer 5 compare match C: one step, 77 cycles from the interrupt's response to RETI, 96 with a
-// look at the clock; at most 892 when it goes on in __vector_z_boundary. STEP rises 27 cycles after
+// look at the clock; at most 907 when it goes on in __vector_z_boundary. STEP rises 27 cycles after
 // the match (60 before a boundary). In an interval of 32768 clocks or more it counts laps of 16384
 // clocks there, too. It writes port L and nothing else that the sketch can see. Behind each
 // instruction stand its cycles.

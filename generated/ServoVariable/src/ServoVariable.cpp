@@ -189,7 +189,7 @@ INLINE void motorRunTimer() {
 }
 
 // Timer 2 compare match A: one step, 94 cycles from the interrupt's response to RETI, 113 with a
-// look at the clock; at most 821 when it comes too late and goes on in __vector_motor_boundary. The
+// look at the clock; at most 836 when it comes too late and goes on in __vector_motor_boundary. The
 // wires change 82 cycles after the match (106 before a boundary). Between two steps it counts laps
 // of the timer, 25 cycles each, and 55 for the last of them. It writes port D and nothing else that
 // the sketch can see. Behind each instruction stand its cycles.

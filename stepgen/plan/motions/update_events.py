@@ -25,6 +25,6 @@ def plan(spec: UpdateEvents, *, timed: bool) -> Motion:
         limit_cycles=40,
         masked_cycles=520 + (_TIMED_CALL_CYCLES if timed else 0),
         dumps=spec.debug,
-        setting_cycles=170,
+        setting_cycles=155,
         masked_setting_cycles=75,
     )
