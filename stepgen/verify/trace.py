@@ -198,8 +198,12 @@ class Trace:
             yield ChannelWrite(cycle, ahead, self._is_in_interrupt(cycle))
 
     def _is_in_interrupt(self, cycle: int) -> bool:
+        """
+        Tell whether an interrupt runs at *cycle* that is none of the sketch, which makes calls.
+        """
         place = bisect_left(self._isr_exits, cycle)
-        return place < len(self._isr_exits) and self._isr_entries[place] < cycle
+        runs = place < len(self._isr_exits) and self._isr_entries[place] < cycle
+        return runs and self._interrupt_of_sketch(cycle) is None
 
     def millis_ticks(self, vector: int, f_cpu_hz: int) -> list[tuple[int, int]]:
         """

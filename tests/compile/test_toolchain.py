@@ -223,8 +223,8 @@ def test_a_program_without_loop_does_not_link(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("qualifier", "size", "message"),
     [
-        ("", 2040, "bytes of RAM, arduino:avr:uno has 2048"),
-        ("const PROGMEM", 32256, "bytes of flash, arduino:avr:uno has 32256"),
+        ("", 2040, "bytes of RAM with its library, and arduino:avr:uno has 2048"),
+        ("const PROGMEM", 32256, "bytes of flash with its library, and arduino:avr:uno has 32256"),
     ],
 )
 def test_a_program_too_big_for_the_board_is_refused(

@@ -282,7 +282,7 @@ MUTANTS = (
         "Motion.endMillis) >= 0",
         "Motion.endMillis) > 0",
         check="millisecond end points",
-        finding="position 50 at cycle",
+        finding="motor: position ",
     ),
     Mutant(
         "a first interval that is a tick too long",

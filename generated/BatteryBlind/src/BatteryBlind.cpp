@@ -220,7 +220,7 @@ SHARED void motorTakeOver() {
 }
 
 // Timer 1 overflow: one step, 50 cycles from the interrupt's response to RETI, 69 with a look at
-// the clock; at most 871 when it goes on in __vector_motor_boundary. The wires change 38 cycles
+// the clock; at most 873 when it goes on in __vector_motor_boundary. The wires change 38 cycles
 // after the timer wraps (62 before a boundary). It writes port D and nothing else that the sketch
 // can see. Behind each instruction stand its cycles.
 ISR(TIMER1_OVF_vect, ISR_NAKED) {

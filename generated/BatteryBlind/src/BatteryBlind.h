@@ -54,7 +54,7 @@ constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops
 
 // The range of a virtual timer TOP: I/O clocks between two steps.
-constexpr uint32_t MOTOR_MIN_TOP = 969UL;  // 8255 steps/s
+constexpr uint32_t MOTOR_MIN_TOP = 971UL;  // 8238 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 8.39 s
 
 // I/O clocks in a second: 8 MHz, divided as CLKPR says at the moment. After a

@@ -215,7 +215,7 @@ SHARED void motorTakeOver() {
 }
 
 // Timer 1 overflow: one step, 32 cycles from the interrupt's response to RETI, 51 with a look at
-// the clock; at most 837 when it goes on in __vector_motor_boundary. The wires change 21 cycles
+// the clock; at most 839 when it goes on in __vector_motor_boundary. The wires change 21 cycles
 // after the timer wraps (45 before a boundary). It writes port B and nothing else that the sketch
 // can see. Behind each instruction stand its cycles.
 ISR(TIMER1_OVF_vect, ISR_NAKED) {

@@ -226,7 +226,7 @@ SHARED void carriageTakeOver() {
 }
 
 // Timer 1 overflow: one step, 41 cycles from the interrupt's response to RETI, 60 with a look at
-// the clock; at most 867 when it goes on in __vector_carriage_boundary. STEP rises 21 cycles after
+// the clock; at most 869 when it goes on in __vector_carriage_boundary. STEP rises 21 cycles after
 // the timer wraps (45 before a boundary). It writes port B and nothing else that the sketch can
 // see. Behind each instruction stand its cycles.
 ISR(TIMER1_OVF_vect, ISR_NAKED) {

@@ -195,7 +195,7 @@ SHARED void motorTakeOver() {
 }
 
 // Timer 1 overflow: one step, 65 cycles from the interrupt's response to RETI, 84 with a look at
-// the clock; at most 915 when it goes on in __vector_motor_boundary. STEP rises 21 cycles after the
+// the clock; at most 917 when it goes on in __vector_motor_boundary. STEP rises 21 cycles after the
 // timer wraps (45 before a boundary). It writes port B and nothing else that the sketch can see.
 // Behind each instruction stand its cycles.
 ISR(TIMER1_OVF_vect, ISR_NAKED) {

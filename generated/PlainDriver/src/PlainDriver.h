@@ -52,7 +52,7 @@ constexpr int8_t MOTOR_ERROR_UPDATE = -4;     // modification, interval or count
 constexpr int8_t MOTOR_WARN_NOT_ENABLED = 1;  // a speed without MOTOR_CTRL_DRV_EN: the motor stops
 
 // The range of a virtual timer TOP: I/O clocks between two steps.
-constexpr uint32_t MOTOR_MIN_TOP = 1013UL;  // 15794 steps/s
+constexpr uint32_t MOTOR_MIN_TOP = 1015UL;  // 15763 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 4.19 s
 
 // I/O clocks in a second: 16 MHz, divided as CLKPR says at the moment. After a

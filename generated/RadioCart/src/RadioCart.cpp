@@ -254,7 +254,7 @@ SHARED void leftTakeOver() {
 }
 
 // Timer 1 overflow: one step, 54 cycles from the interrupt's response to RETI, 73 with a look at
-// the clock; at most 934 when it goes on in __vector_left_boundary. The wires change 41 cycles
+// the clock; at most 936 when it goes on in __vector_left_boundary. The wires change 41 cycles
 // after the timer wraps (65 before a boundary). It writes port K and nothing else that the sketch
 // can see. Behind each instruction stand its cycles.
 ISR(TIMER1_OVF_vect, ISR_NAKED) {

@@ -608,7 +608,7 @@ SHARED void upperTakeOver() {
 }
 
 // Timer 5 overflow: one step, 58 cycles from the interrupt's response to RETI, 77 with a look at
-// the clock; at most 878 when it goes on in __vector_upper_boundary. The wires change 45 cycles
+// the clock; at most 880 when it goes on in __vector_upper_boundary. The wires change 45 cycles
 // after the timer wraps (69 before a boundary). It writes port B, E and H and nothing else that the
 // sketch can see. Behind each instruction stand its cycles.
 ISR(TIMER5_OVF_vect, ISR_NAKED) {

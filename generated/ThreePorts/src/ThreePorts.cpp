@@ -226,7 +226,7 @@ SHARED void motorTakeOver() {
 }
 
 // Timer 1 overflow: one step, 78 cycles from the interrupt's response to RETI, 97 with a look at
-// the clock; at most 911 when it goes on in __vector_motor_boundary. The wires change 64 cycles
+// the clock; at most 913 when it goes on in __vector_motor_boundary. The wires change 64 cycles
 // after the timer wraps (88 before a boundary). It writes port B, C and D and nothing else that the
 // sketch can see. Behind each instruction stand its cycles.
 ISR(TIMER1_OVF_vect, ISR_NAKED) {
