@@ -197,7 +197,8 @@ def boundary(way: Way) -> Iterator[tuple[str, Any]]:
 
 def _wakes(way: Way, silent: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
     before, after = way.before, way.after
-    looks = z3.And(after.is_in(RUNNING), after.is_in(CLOCKED))
+    steps = z3.Not(before.is_lapping)  # else nothing is looked at yet
+    looks = z3.And(after.is_in(RUNNING), after.is_in(CLOCKED), steps)
     ahead = wide(after.of("wake") - low_millis(after))
     yield (
         "the interrupt wakes up within the range of its comparison",
@@ -227,6 +228,7 @@ def _wakes(way: Way, silent: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
                 before.is_in(LIMITED),
                 before.entered_count != 0,
                 z3.Not(silent),
+                steps,
             ),
             after.is_in(RUNNING) == (millis_left(before) > 0),
         ),

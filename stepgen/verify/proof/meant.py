@@ -66,6 +66,7 @@ MEANT = {
     "return false;": _COUNTS,
     "OCR1A = now + kSoonTicks;": _COUNTS,
     "++motion.missed;": "it wraps at 16 bits, as the header says",
+    "motion.rest += run - 1;": _ENDLESS,
     "motion.rest += --run;": "the carry is taken in the next line",
     "if (motion.rest < run) ++motion.restHigh;": _ENDLESS,
 }
