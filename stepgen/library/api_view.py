@@ -126,7 +126,7 @@ def tells_missed(motor: MotorPlan) -> bool:
     """
     Tell whether *motor* counts the steps that come too late.
     """
-    return motor.hot_path.tells_missed
+    return motor.gate.tells_missed
 
 
 def dump_name(motor: MotorPlan) -> str:

@@ -7,6 +7,7 @@ from stepgen.library.api_view import CALL_CYCLES, dump_name
 from stepgen.library.sharing import Need, sharing_rules
 from stepgen.library.text import comment_lines, frequency, listed
 from stepgen.plan.model import MotorPlan, Plan
+from stepgen.plan.pulses import PulseDrive
 
 
 def summary(motor: MotorPlan) -> str:
@@ -121,10 +122,14 @@ def init_comment(motor: MotorPlan) -> tuple[str, ...]:
     Return what the function that prepares the motor does, as lines of a comment.
     """
     coils = ", with the coils off" if motor.switches_current else ""
+    floats = (
+        "; a driver that must be off meanwhile needs a resistor at its ENABLE"
+        if isinstance(motor.drive, PulseDrive) and motor.drive.enables
+        else ""
+    )
     return comment_lines(
         f"Makes the pins outputs{coils}, at position 0. Call it once, from setup(). Until "
-        "then, and from any reset on, they are inputs and drive nothing: what must not float "
-        "meanwhile, such as an ENABLE, needs a resistor."
+        f"then, and from any reset on, they are inputs and drive nothing{floats}."
     )
 
 

@@ -71,7 +71,6 @@ class HotPath:
         lap_cycles: The same of interrupts without a step, in order of length; empty where none is.
         overrun_cycles: How late an interrupt begins, from its flag to the response, where its step
             counts as missed; None where that is no matter of this interrupt.
-        tells_missed: Whether steps that are missed are counted.
         clock_cycles: The same with a look at the clock.
         edge_cycles: From the timer's flag to the end of the write that makes the step, usually.
         boundary_edge_cycles: The same on the boundary's way.
@@ -87,7 +86,6 @@ class HotPath:
     recurring_cycles: int | None
     lap_cycles: tuple[int, ...]
     overrun_cycles: int | None
-    tells_missed: bool
     clock_cycles: int
     edge_cycles: int
     boundary_edge_cycles: int
@@ -175,7 +173,6 @@ def compose(
         recurring_cycles=max(by_look, going_on) if gate.look else None,
         lap_cycles=tuple(until_gate + cycles for cycles in gate.lap_cycles),
         overrun_cycles=None if overrun is None else overrun - until_gate,
-        tells_missed=gate.tells_missed,
         clock_cycles=usual_cycles + looked,
         edge_cycles=until_step + _cycles_to_edge(step),
         boundary_edge_cycles=until_rare_step + looked + _cycles_to_edge(step),

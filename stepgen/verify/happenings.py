@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from stepgen.devices import Board
+from stepgen.reference.facts import MotorFacts
 from stepgen.reference.stimuli import (
     CallBack,
     Callbacks,
@@ -49,16 +50,7 @@ class Told:
 @dataclass(frozen=True)
 class StatusRead:
     """
-    A call reads the status: in its first section with interrupts off.
-    """
-
-    answer: Answer
-
-
-@dataclass(frozen=True)
-class MissedRead:
-    """
-    The same call reads how many steps came too late: in its third section.
+    A call reads the status. Steps may come before it reads the next thing.
     """
 
     answer: Answer
@@ -67,7 +59,16 @@ class MissedRead:
 @dataclass(frozen=True)
 class PositionRead:
     """
-    The same call reads the position: in its second section. Steps may come in between.
+    The same call reads the position.
+    """
+
+    answer: Answer
+
+
+@dataclass(frozen=True)
+class MissedRead:
+    """
+    The same call reads how many steps came too late.
     """
 
     answer: Answer
@@ -76,13 +77,14 @@ class PositionRead:
 @dataclass(frozen=True)
 class TimeoutRead:
     """
-    The same call reads whether the motor timed out: after the other sections, before its end.
+    The same call reads whether the motor timed out.
     """
 
     answer: Answer
 
 
-Happening = Told | StatusRead | PositionRead | MissedRead | TimeoutRead
+Read = StatusRead | PositionRead | MissedRead | TimeoutRead
+Happening = Told | Read
 Row = tuple[int, Order, Happening]
 
 
@@ -94,9 +96,7 @@ def happenings(
     """
     for answer in answers:
         if answer.call.motor == index:
-            yield from _rows_of_call(answer, trace)
-            if subject.facts.tells_missed:
-                yield from _rows_of_missed(answer, trace)
+            yield from _rows_of_call(answer, trace, subject.facts)
     starts = trace.clock_starts(subject.timer)
     if subject.channel is None:
         for start in starts:
@@ -111,40 +111,44 @@ def happenings(
         yield cycle, Order.MILLIS, Told(MillisTick(cycle, millis))
 
 
-def _rows_of_call(answer: Answer, trace: Trace) -> Iterator[Row]:
+def masked_sections(kind: CallKind, facts: MotorFacts) -> int:
+    """
+    Return how many times a call of *kind* has interrupts off, one after the other.
+    """
+    if kind is CallKind.READ:
+        return len(_reads(facts))
+    # An event, then what is called back; one callback, then the other.
+    return 2 if kind in (CallKind.UPDATE_CHECK, CallKind.CALLBACKS) else 1
+
+
+def _reads(facts: MotorFacts) -> tuple[type[Read], ...]:
+    """
+    Return what a call reads, in its order, each with interrupts off for a moment.
+    """
+    missed = (MissedRead,) if facts.tells_missed else ()
+    timed = (TimeoutRead,) if facts.command_timeout_millis is not None else ()
+    return (StatusRead, PositionRead, *missed, *timed)
+
+
+def _rows_of_call(answer: Answer, trace: Trace, facts: MotorFacts) -> Iterator[Row]:
     """
     Yield what the call of *answer* does, at the cycles where it switches the interrupts off.
     """
-    first = trace.commit(answer.begin_cycle, answer.end_cycle)
-    if first is None:
-        return
-    cycle = first[0]
-    second = trace.commit(answer.begin_cycle, answer.end_cycle, 1) or first
-    stimulus = _stimulus(answer, cycle)
-    if stimulus is not None:
-        yield cycle, Order.CALL, Told(stimulus, answer)
-        if answer.call.kind is CallKind.UPDATE_CHECK:
-            yield second[0], Order.CALL, Told(CallBack(second[0]))
-        return
-    if answer.call.kind is not CallKind.READ:
-        return
-    yield cycle, Order.CALL, StatusRead(answer)
-    yield second[0], Order.CALL, PositionRead(answer)
-    yield answer.end_cycle, Order.CALL, TimeoutRead(answer)
-
-
-def _rows_of_missed(answer: Answer, trace: Trace) -> Iterator[Row]:
-    """
-    Yield the reading of the missed steps, where the call of *answer* does so.
-    """
-    third = trace.commit(answer.begin_cycle, answer.end_cycle, 2)
-    if answer.call.kind is CallKind.READ and third:
-        yield third[0], Order.CALL, MissedRead(answer)
+    kind, begin, end = answer.call.kind, answer.begin_cycle, answer.end_cycle
+    found = (trace.commit(begin, end, which) for which in range(masked_sections(kind, facts)))
+    cycles = [section[0] for section in found if section]
+    if kind is CallKind.READ:
+        rows = zip(cycles, _reads(facts), strict=False)
+        yield from ((cycle, Order.CALL, read(answer)) for cycle, read in rows)
+    elif cycles and (stimulus := _stimulus(answer, cycles[0])):
+        yield cycles[0], Order.CALL, Told(stimulus, answer)
+        if kind is CallKind.UPDATE_CHECK:
+            yield cycles[-1], Order.CALL, Told(CallBack(cycles[-1]))
 
 
 def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:
     """
-    Return what the model is told of the call of *answer*; nothing of one that only reads.
+    Return what the model is told of the call of *answer*; nothing of one that is of no motor.
     """
     call = answer.call
     update = (call.modification, call.interval, call.count)

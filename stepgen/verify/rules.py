@@ -14,14 +14,13 @@ from stepgen.reference.contract import Control
 from stepgen.reference.stimuli import Edge, EdgeKind
 from stepgen.reference.timer import TimerSetting
 from stepgen.verify.bench import OF_NO_MOTOR, Answer, CallKind
+from stepgen.verify.happenings import masked_sections
 from stepgen.verify.oracle import WAKE_CYCLES, Scene
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import ClockStart, Run
 
 # The step interrupt sets the timer with a constant that was measured; compilers differ a little.
 _CALIBRATION_CYCLES = 8
-# Status, then position; one callback, then the other.
-_MASKED_SECTIONS = {CallKind.READ: 2, CallKind.CALLBACKS: 2}
 _NO_CODE = {CallKind.READ, CallKind.UPDATE_CHECK, CallKind.CALLBACKS, CallKind.KEEP_ALIVE}
 
 
@@ -55,9 +54,7 @@ def _unmasked_calls(subject: Subject, scene: Scene, answers: Sequence[Answer]) -
     Whatever is shared with the interrupt is read and written with interrupts off.
     """
     for answer in answers:
-        sections = _MASKED_SECTIONS.get(answer.call.kind, 1)
-        if answer.call.kind is CallKind.READ and subject.facts.tells_missed:
-            sections += 1  # the missed steps
+        sections = masked_sections(answer.call.kind, subject.facts)
         if scene.trace.commit(answer.begin_cycle, answer.end_cycle, sections - 1) is None:
             yield f"{answer.call} touches what the interrupt changes without masking it"
 

@@ -430,6 +430,15 @@ MUTANTS = (
         spec="mega_command_timeouts",
     ),
     Mutant(
+        "a command time-out that is read without cli",
+        "timeouts/command.j2",
+        "  const Masked masked;  // or a loop that waits for it would look only once\n",
+        "",
+        check="belt: left alone",
+        finding="without masking it",
+        spec="uno_command_timeout",
+    ),
+    Mutant(
         "a command time-out that nobody can read of",
         "timeouts/command.j2",
         "  {{ motor.name }}LeftAlone = 1;\n",

@@ -84,8 +84,8 @@ constexpr uint32_t xStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void xShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -142,8 +142,8 @@ constexpr uint32_t yStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void yShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

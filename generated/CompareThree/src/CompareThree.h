@@ -87,8 +87,8 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // all that follow it, can come 65536 clocks late, and nothing tells.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void xShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -140,8 +140,8 @@ int8_t xRelease();
 // all that follow it, can come 65536 clocks late, and nothing tells.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void yShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -192,8 +192,8 @@ int8_t yRelease();
 // all that follow it, can come 65536 clocks late, and nothing tells.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void zShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -80,8 +80,8 @@ constexpr uint32_t leftStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void leftShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -138,8 +138,8 @@ constexpr uint32_t rightStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void rightShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -515,4 +515,7 @@ void beltKeepAlive() {
   beltHeardOf();
 }
 
-uint8_t beltTimedOut() { return beltLeftAlone; }
+uint8_t beltTimedOut() {
+  const Masked masked;  // or a loop that waits for it would look only once
+  return beltLeftAlone;
+}

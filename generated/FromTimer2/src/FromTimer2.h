@@ -77,8 +77,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // step and all that follow it can come 2048 clocks late, and nothing tells.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void motorShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

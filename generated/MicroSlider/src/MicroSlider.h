@@ -99,8 +99,8 @@ uint32_t carriageTimerCalcNanometresPerSecond(uint32_t speed);
 int32_t carriageReadNanometres();
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void carriageShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -172,8 +172,7 @@ constexpr uint32_t headStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void headShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -81,8 +81,7 @@ constexpr uint32_t nearStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void nearShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -126,8 +125,7 @@ int8_t nearRelease();
 // Timer 4 belongs to the motor: no analogWrite() on D6, D7 or D8.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void farShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

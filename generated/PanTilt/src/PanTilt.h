@@ -80,8 +80,7 @@ constexpr uint32_t panStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void panShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -134,8 +133,7 @@ constexpr uint32_t tiltStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void tiltShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -75,8 +75,7 @@ constexpr uint32_t motorStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void motorShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

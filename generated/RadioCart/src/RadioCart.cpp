@@ -647,7 +647,10 @@ void leftKeepAlive() {
   leftHeardOf();
 }
 
-uint8_t leftTimedOut() { return leftLeftAlone; }
+uint8_t leftTimedOut() {
+  const Masked masked;  // or a loop that waits for it would look only once
+  return leftLeftAlone;
+}
 
 // ---- right: DRV8825, full steps, timer 3 ----
 
@@ -1031,4 +1034,7 @@ void rightKeepAlive() {
   rightHeardOf();
 }
 
-uint8_t rightTimedOut() { return rightLeftAlone; }
+uint8_t rightTimedOut() {
+  const Masked masked;  // or a loop that waits for it would look only once
+  return rightLeftAlone;
+}

@@ -86,8 +86,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // Timer 1 belongs to the motor: no analogWrite() on D11, D12 or D13.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void leftShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -164,8 +163,8 @@ int8_t leftRelease();
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void rightShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -82,8 +82,8 @@ uint32_t zTimerCalcNanometresPerSecond(uint32_t speed);
 int32_t zReadNanometres();
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing; a driver that must be off
+// meanwhile needs a resistor at its ENABLE.
 void zShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

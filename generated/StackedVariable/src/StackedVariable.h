@@ -96,8 +96,7 @@ constexpr uint32_t lowerStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void lowerShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -152,8 +151,7 @@ constexpr uint32_t upperStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void upperShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -81,8 +81,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void motorShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

@@ -88,8 +88,7 @@ constexpr uint32_t leftStepsForTurns(uint16_t turns) {
 }
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void leftShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.
@@ -139,8 +138,7 @@ int8_t leftRelease();
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
-// then, and from any reset on, they are inputs and drive nothing: what must not float meanwhile,
-// such as an ENABLE, needs a resistor.
+// then, and from any reset on, they are inputs and drive nothing.
 void rightShieldInit();
 
 // Starts, changes or stops the motion, and returns at once.

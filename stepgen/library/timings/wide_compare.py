@@ -19,7 +19,6 @@ class WideCompareView:
     Names of a timer's registers and of the bits of one channel.
 
     Args:
-        sharers: The other motors on this timer, whose channels it has.
         clock: Selects the CPU's clock.
         longest_wait: How many clocks its interrupt may wait without harm.
     """
@@ -27,7 +26,6 @@ class WideCompareView:
     number: int
     struct_prefix: str
     shared_by: str
-    channel: str
     tccra: str
     tccrb: str
     tcnt: str
@@ -57,7 +55,6 @@ def view(motor: MotorPlan) -> WideCompareView:
         number=n,
         struct_prefix="Wide",
         shared_by="wide_compare",
-        channel=channel,
         tccra=timer.tccra.name,
         tccrb=timer.tccrb.name,
         tcnt=timer.tcnt.name,
