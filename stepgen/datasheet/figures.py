@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from stepgen.library.rates_view import microseconds
 from stepgen.plan.model import MotorPlan, Plan, RateLimit
 from stepgen.plan.rates import Clock
 from stepgen.plan.timings import plan_setting
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from stepgen.datasheet.report import MotorFigures, Report
 
 NOT_VERIFIED = "not verified"
+_TENTHS_OF_US = 10_000_000  # in a second
 _RATES_SPS = (1, 10, 30, 100, 200, 300, 500, 1_000, 2_000, 3_000, 5_000, 10_000, 20_000)
 
 Row = tuple[str, ...]
@@ -123,8 +125,8 @@ def held_table(plan: Plan) -> Table:
     rows = tuple(
         (
             f"{int(held.steps_per_second)}",
-            *_both(held.stretch_cycles, plan),
-            *_both(held.late_cycles, plan),
+            *_allowed(held.stretch_cycles, plan),
+            *_late(held.late_cycles, plan),
         )
         for held in plan.held_off
     )
@@ -132,8 +134,18 @@ def held_table(plan: Plan) -> Table:
     return Table("How long the sketch may have interrupts off", heading, rows)
 
 
-def _both(cycles: int, plan: Plan) -> Row:
-    return (f"{cycles}", f"{cycles * 1e6 / plan.board.f_cpu_hz:.1f}")
+def _allowed(cycles: int, plan: Plan) -> Row:
+    """
+    Return *cycles*, and microseconds that are not more.
+    """
+    return (f"{cycles}", f"{cycles * _TENTHS_OF_US // plan.board.f_cpu_hz / 10:.1f}")
+
+
+def _late(cycles: int, plan: Plan) -> Row:
+    """
+    Return *cycles*, and microseconds that are not less.
+    """
+    return (f"{cycles}", f"{-(-cycles * _TENTHS_OF_US // plan.board.f_cpu_hz) / 10:.1f}")
 
 
 def interrupt_table(plan: Plan, report: "Report | None") -> Table:
@@ -220,8 +232,7 @@ def facts(plan: Plan) -> Iterator[tuple[str, str]]:
         yield (f"{motor.name}, up to", f"{int(safest.steps_per_second)} steps/s")
         yield (f"{motor.name}, a step takes", f"{motor.hot_path.usual_cycles} clocks")
     fastest = plan.held_off[-1]
-    stretch_us = fastest.stretch_cycles * 1e6 / plan.board.f_cpu_hz
     yield (
         f"interrupts off at {int(fastest.steps_per_second)} steps/s",
-        f"{stretch_us:.0f} us at most",
+        f"{int(microseconds(fastest, plan))} us at most",
     )

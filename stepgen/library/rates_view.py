@@ -52,12 +52,12 @@ def held_rows(plan: Plan) -> Iterator[HeldRow]:
     Yield the rows of the table of stretches with interrupts off.
     """
     for held in plan.held_off:
-        microseconds = _microseconds(held, plan)
+        allowed_us = microseconds(held, plan)
         frame = _lowest_baud(held, plan)
         yield HeldRow(
             f"{int(held.steps_per_second)}",
-            f"{int(microseconds)} us",
-            str(int(microseconds // _PIXEL_US)),
+            f"{int(allowed_us)} us",
+            str(int(allowed_us // _PIXEL_US)),
             f"{frame}" if frame else "none",
         )
 
@@ -72,8 +72,8 @@ def lowest_baud(plan: Plan, steps_per_second: int, at_least: int) -> int | None:
 
 
 def _lowest_baud(held: HeldOff, plan: Plan) -> int | None:
-    microseconds = _microseconds(held, plan)
-    return next((b for b in _BAUD_RATES if FRAME_BITS * 1e6 / b <= microseconds), None)
+    allowed_us = microseconds(held, plan)
+    return next((b for b in _BAUD_RATES if FRAME_BITS * 1e6 / b <= allowed_us), None)
 
 
 def lateness(plan: Plan) -> str:
@@ -84,11 +84,14 @@ def lateness(plan: Plan) -> str:
     more = max(held.late_cycles - held.stretch_cycles for held in plan.held_off)
     return (
         f"A step that falls due meanwhile is late by the length of the stretch and "
-        f"{more * 1e6 / f_cpu:.0f} us at most; those after it are on time again. Stretches that "
-        f"follow each other at once count as one. With interrupts off for more than "
+        f"{-(-more * 1_000_000 // f_cpu)} us at most; those after it are on time again. Stretches "
+        f"that follow each other at once count as one. With interrupts off for more than "
         f"{_TICK_CYCLES * 1e3 / f_cpu:.1f} ms `millis()` goes behind."
     )
 
 
-def _microseconds(held: HeldOff, plan: Plan) -> float:
+def microseconds(held: HeldOff, plan: Plan) -> float:
+    """
+    Return how long the sketch may have interrupts off.
+    """
     return held.stretch_cycles * 1e6 / plan.board.f_cpu_hz
