@@ -89,6 +89,7 @@ class MotorView:
     variables: tuple[Named, ...]
     releases: bool
     switches: bool
+    axis: None
     holds: bool
     wake_top: str
     need: Need | None
@@ -146,6 +147,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         need=need,
         sharers=need.others if need else (),
         switches=motor.switches_current,
+        axis=None,
         holds=motor.switches_current and not motor.releases_at_rest,
         wake_top=f"{motor.wake_cycles}UL",
         switch_on=switched(drive.enables, mcu, active=True),

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from stepgen.devices import Mcu
 from stepgen.plan.instructions import Gate, Instruction, Storage, total_cycles
 from stepgen.plan.kernels import Kernel
+from stepgen.plan.ladder import Ladder
 from stepgen.plan.step_code import end_code, saved_registers, step_code
 
 _CLOCK_TAKEN_CYCLES = 1  # SBRC that does not skip and RJMP, against SBRC that does
@@ -51,6 +52,9 @@ class Motion:
     setting_cycles: int = 0
     masked_setting_cycles: int = 0
     changes_speed: bool = False
+    ladder: Ladder | None = None
+    queue: int = 0
+    cruise_interval_256: int = 0
 
 
 @dataclass(frozen=True)

@@ -97,7 +97,7 @@ def errors(ladder: Ladder, cruise_256: int, wish: Wish) -> Errors:
     real = _climbed(ladder, cruise_256)
     climb = ladder.levels[ladder.goal(cruise_256)].height
     for steps, (wanted, made) in enumerate(zip(wish.intervals(), real, strict=False)):
-        if steps >= max(climb, square):
+        if steps >= climb and steps >= square:
             break
         # In 1/256 clock and 2^-64 of it, so that the sums stay short.
         ideal = (wanted.numerator * FRACTIONS << _CLOCK_BITS) // wanted.denominator

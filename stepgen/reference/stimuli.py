@@ -193,7 +193,7 @@ class QueueMoveTo:
 
 
 @dataclass(frozen=True)
-class Run:
+class RunOn:
     """
     A call of an axis to go on for ever in *direction*, +1 or -1.
     """
@@ -245,7 +245,17 @@ class SetPosition:
 
 Call = SetSpeed | Hold | Release | Init
 AxisCall = (
-    MoveTo | Move | QueueMoveTo | Run | Stop | Halt | SetPace | SetPosition | Hold | Release | Init
+    MoveTo
+    | Move
+    | QueueMoveTo
+    | RunOn
+    | Stop
+    | Halt
+    | SetPace
+    | SetPosition
+    | Hold
+    | Release
+    | Init
 )
 AxisStimulus = AxisCall | ChannelSet | ClockOn | MillisTick
 Stimulus = Call | UpdateCheck | CallBack | KeepAlive | Callbacks | ClockOn | ChannelSet | MillisTick

@@ -27,7 +27,7 @@ from stepgen.reference.stimuli import (
     MoveTo,
     QueueMoveTo,
     Release,
-    Run,
+    RunOn,
     SetPace,
     SetPosition,
     Stop,
@@ -190,7 +190,7 @@ class TrapezoidModel:
         match call:
             case MoveTo() | Move() | QueueMoveTo():
                 return self._move(call)
-            case Run():
+            case RunOn():
                 self._run(call)
             case Stop():
                 self._stop()
@@ -230,7 +230,7 @@ class TrapezoidModel:
         self._queue.append(call.position)
         return Code.FINE
 
-    def _run(self, call: Run) -> None:
+    def _run(self, call: RunOn) -> None:
         self._forget_plans()
         self._endless = call.direction
         if self._running:

@@ -34,7 +34,7 @@ from stepgen.reference.stimuli import (
     MoveTo,
     QueueMoveTo,
     Release,
-    Run,
+    RunOn,
     SetPace,
     SetPosition,
     Stop,
@@ -305,7 +305,7 @@ def test_stop_comes_down_from_where_it_is() -> None:
     The next step as planned, then down; the target is where that ends.
     """
     # At 7100 position 8, h = 7: left 8.
-    model = started(Run(1_000, 1), Stop(7_100))
+    model = started(RunOn(1_000, 1), Stop(7_100))
 
     assert model.target == 16
     assert gaps(model)[7:] == [600, 600, *DOWN]
@@ -317,7 +317,7 @@ def test_stop_on_the_way_up_comes_down_at_once() -> None:
     A level that is not complete plays no part.
     """
     # At 4000 position 3, h = 3, on its first step at 700: left 4; 4400; then 800, 900, 1000.
-    model = started(Run(1_000, -1), Stop(4_000))
+    model = started(RunOn(1_000, -1), Stop(4_000))
 
     assert gaps(model) == [1000, 900, 800, 700, 800, 900, 1000]
     assert model.position == -7
@@ -364,7 +364,7 @@ def test_a_faster_pace_goes_on_up_and_a_slower_one_comes_down_to_it() -> None:
     # 850, goal 1: at 8820 h = 3: down 800: 9620; down 900: 10520; flat 850: 11370.
     model = model_of(
         SetPace(900, 750 << 8),
-        Run(1_000, 1),
+        RunOn(1_000, 1),
         ChannelSet(1_020, 980),
         SetPace(6_000, 660 << 8),
         SetPace(8_200, 850 << 8),
@@ -386,7 +386,7 @@ def test_a_pace_lets_a_level_be_climbed_from_or_not(pace: int, expected: list[in
     """
     A visit on the way up goes on to its end unless what follows is beyond the new goal.
     """
-    model = started(Run(1_000, 1), SetPace(4_000, pace << 8))
+    model = started(RunOn(1_000, 1), SetPace(4_000, pace << 8))
 
     assert gaps(model, 5_800)[3:6] == expected
 
@@ -396,7 +396,7 @@ def test_a_pace_slower_than_the_first_interval_is_that_of_level_0() -> None:
     In flight it comes down to rest, as it were, and goes on more slowly than it began.
     """
     # At 3000 h = 2 (2000, 2900): 3700. Down: 900: 4600; 1000: 5600; flat 5000: 10600.
-    model = started(Run(1_000, 1), SetPace(3_000, 5_000 << 8))
+    model = started(RunOn(1_000, 1), SetPace(3_000, 5_000 << 8))
 
     assert gaps(model, 20_000) == [1000, 900, 800, 900, 1000, 5000, 5000]
 
@@ -418,7 +418,7 @@ def test_running_the_other_way_turns_round() -> None:
     Down to rest, then up in the other direction, without an end; the target is where it is.
     """
     # At 7100 position 8, h = 7: to 16, then back.
-    model = started(Run(1_000, 1), Run(7_100, -1))
+    model = started(RunOn(1_000, 1), RunOn(7_100, -1))
 
     assert gaps(model, 30_000)[8:22] == [600, *DOWN, *UP[:6]]
     assert model.running
@@ -431,7 +431,7 @@ def test_running_on_while_it_turns_takes_the_turn_back() -> None:
     Wanted the other way and then this way again, it climbs from where it is.
     """
     # As with a turn that is taken back by a target.
-    model = started(Run(1_000, 1), Run(7_100, -1), Run(7_700, 1))
+    model = started(RunOn(1_000, 1), RunOn(7_100, -1), RunOn(7_700, 1))
 
     assert gaps(model, 10_800)[8:] == [600, 650, 650, 650, 650, 600]
 
@@ -480,7 +480,7 @@ def test_a_queue_at_rest_begins_to_move_and_without_an_end_is_refused() -> None:
     model = started(QueueMoveTo(1_000, 2))
     assert gaps(model, 5_000) == [1000, 1000]
 
-    model = started(Run(1_000, 1), QueueMoveTo(1_100, 2))
+    model = started(RunOn(1_000, 1), QueueMoveTo(1_100, 2))
     assert model.return_codes[-1] == Code.RUNNING
 
 
@@ -488,7 +488,7 @@ def test_a_new_move_empties_the_queue() -> None:
     """
     So do all calls that are not in the queue.
     """
-    for call in (MoveTo(2_100, 4), Move(2_100, 3), Stop(2_100), Run(2_100, 1)):
+    for call in (MoveTo(2_100, 4), Move(2_100, 3), Stop(2_100), RunOn(2_100, 1)):
         model = started(MoveTo(1_000, 10), QueueMoveTo(1_100, -50), call, Stop(2_200))
         steps(model)
         assert model.position > 0
@@ -599,7 +599,7 @@ def test_init_is_the_beginning_again() -> None:
     """
     The pace of the spec, no queue, no step, nothing missed.
     """
-    model = started(Run(1_000, -1), SetPace(1_500, 900 << 8), Init(7_100), MoveTo(8_000, 20))
+    model = started(RunOn(1_000, -1), SetPace(1_500, 900 << 8), Init(7_100), MoveTo(8_000, 20))
     model.apply(ChannelSet(8_020, 980))
     assert model.position == 0
 
