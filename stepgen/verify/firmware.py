@@ -41,6 +41,7 @@ class BenchView:
     free_pins: tuple[int, ...]
     changing: tuple[str, ...]
     arguments: dict[str, str]
+    inits: tuple[str, ...]
     axes: bool
     limits: bool
 
@@ -144,6 +145,7 @@ def _bench_view(plan: Plan) -> BenchView:
     return BenchView(
         changing=changing,
         arguments=arguments,
+        inits=tuple(m.name + ("Init" if is_axis(m) else "ShieldInit") for m in plan.motors),
         axes=len(arguments) < len(plan.motors),
         limits=bool(arguments),
         free_bits=tuple(bits),

@@ -68,7 +68,7 @@ class CallStep(SpecModel):
     """
     ``{call: set_speed, motor: pan, control: [DRV_EN], top: 20000, limit: 10}``.
 
-    Of an axis ``{call: move_to, steps: -400}`` or ``{call: set_pace, top: 409600}``, in 1/256 clock.
+    Of an axis ``{call: move_to, steps: -400}``, and in 1/256 clock ``{call: set_pace, top: 9999}``.
 
     A number for ``control`` is passed on as it is, also where the library must refuse it.
     """
