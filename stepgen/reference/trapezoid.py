@@ -301,8 +301,8 @@ class TrapezoidModel:
         """
         self._call_index = len(self._codes)
         self._pace.stop()
-        self._axis.switch(cycle, on=True, call_index=self._call_index)
         self._begin_leg(cycle, direction)
+        self._axis.switch(cycle, on=True, call_index=self._call_index)
         first = max(self._climb.interval_256, self._facts.wake_cycles * FRACTIONS)
         self._pace.begin_256(first)
         self._starts.append(Start(cycle, first // FRACTIONS))

@@ -177,6 +177,8 @@ def _rows_of_call(answer: Answer, trace: Trace, facts: MotorFacts) -> Iterator[R
     kind, begin, end = answer.call.kind, answer.begin_cycle, answer.end_cycle
     found = (trace.commit(begin, end, which) for which in range(masked_sections(kind, facts)))
     cycles = [section[0] for section in found if section]
+    if kind is CallKind.SET_PACE and not cycles and answer.result:
+        cycles = [end]  # it was refused for what it asks, and needed nothing else to know
     if kind is CallKind.READ:
         rows = zip(cycles, masked_reads(facts), strict=False)
         yield from ((cycle, Order.CALL, read(answer)) for cycle, read in rows)

@@ -55,6 +55,8 @@ def _unmasked_calls(subject: Subject, scene: Scene, answers: Sequence[Answer]) -
     Whatever is shared with the interrupt is read and written with interrupts off.
     """
     for answer in answers:
+        if answer.call.kind is CallKind.SET_PACE and answer.result:
+            continue  # refused for what it asks, it touches nothing
         sections = masked_sections(answer.call.kind, subject.facts)
         if scene.trace.commit(answer.begin_cycle, answer.end_cycle, sections - 1) is None:
             yield f"{answer.call} touches what the interrupt changes without masking it"
