@@ -15,14 +15,15 @@ from stepgen.verify.ladders import ladder_of
 from stepgen.verify.late_scenarios import hold_up
 from stepgen.verify.scenarios import Action, Scenario, Wait
 
-_BUDGET_CYCLES = 24_000_000  # of a scenario, about: longer ones are thinned out
-_LONG_MOVE_STEPS = 12_000
+_BUDGET_CYCLES = 12_000_000  # of a scenario, about: longer ones are thinned out
+_LONG_MOVE_STEPS = 10_000
 _MANY_STEPS = 1_000_000
 _SHORT_MOVES = 60
 _SETTLE_CYCLES = 5_000
 _LONGEST_HOLD_CYCLES = 30_000
 _FIRST_STEPS = 5
 _FURTHEST = (1 << 31) - 1
+_RANDOM_TARGETS = 60
 _SEED = 20_261_201
 
 Named = tuple[str, Loop, Iterator[Action]]
@@ -68,7 +69,7 @@ class AxisSketch:
         """
         yield "a long move at full speed", Loop.BUSY, self._long_move()
         yield "short moves both ways", Loop.BUSY, self._short_moves()
-        yield "moves about as long as both ramps", Loop.SLEEP, self._triangles()
+        yield "moves that do not come to full speed", Loop.SLEEP, self._triangles()
         yield "halts and stops at every point of the first steps", Loop.BUSY, self._first_steps()
         yield "stops at many points of a ramp", Loop.BUSY, self._stops()
         yield "calls at every point of a period at full speed", Loop.BUSY, self._at_speed()
@@ -124,7 +125,8 @@ class AxisSketch:
         return points[:: -(-len(points) // most)]
 
     def _long_move(self) -> Iterator[Action]:
-        steps = min(_LONG_MOVE_STEPS, 2 * _BUDGET_CYCLES // self._period) + 2 * self.ramp_steps
+        steps = min(_LONG_MOVE_STEPS, 4 * _BUDGET_CYCLES // self._period)
+        steps = max(steps, 2 * self.ramp_steps + 100)
         yield self.call(CallKind.MOVE_TO, steps)
         yield Wait(self.clocks(steps) // 2)
         yield self.read
@@ -146,9 +148,12 @@ class AxisSketch:
         yield from self._moves(self._thinned(range(1, _SHORT_MOVES + 1), 2 * middle))
 
     def _triangles(self) -> Iterator[Action]:
-        both = 2 * self.ramp_steps
-        lengths = [max(both + more, 1) for more in (-1, 0, 1, -both // 2, -both // 3, 7)]
-        yield from self._moves(self._thinned(lengths, 2 * self.clocks(both)))
+        part = max(2 * self.ramp_steps // 9, 2)
+        lengths = (-part - 1, part, 1 - part, part // 2, -part // 3, part + 7)
+        for steps in self._thinned(lengths, self.clocks(part)):
+            yield self.call(CallKind.MOVE, steps)
+            yield Wait(self.clocks(steps))
+            yield self.read
 
     def _first_steps(self) -> Iterator[Action]:
         """
@@ -166,7 +171,7 @@ class AxisSketch:
                 (CallKind.MOVE, 2),
             )
         )
-        thinned = self._thinned(points, 2 * longest + self._first)
+        thinned = self._thinned(points, (2 * longest + self._first) // 4)
         for offset, (kind, steps) in zip(thinned, ways, strict=False):
             yield self.call(CallKind.RUN_FORWARD)
             yield Wait(begin // 2 + offset)
@@ -178,11 +183,11 @@ class AxisSketch:
 
     def _stops(self) -> Iterator[Action]:
         """
-        Stop on the way up, at full speed and on the way down.
+        Stop on the way up, on the flat and on the way down.
         """
-        steps = 2 * self.ramp_steps + 100
+        steps = 2 * self.ramp_steps // 9 + 20
         whole = self.clocks(steps)
-        for part in self._thinned(range(1, 12), whole):
+        for part in self._thinned((7, 5, 2, 10, 3, 8, 1, 11, 6, 9), whole):
             yield self.call(CallKind.MOVE, steps if part % 2 else -steps)
             yield Wait(whole * part // 12)
             yield self.call(CallKind.STOP)
@@ -244,21 +249,27 @@ class AxisSketch:
 
     def _targets(self) -> Iterator[Action]:
         """
-        Name another target at many points of a move: farther, nearer, behind, here.
+        Name another target at many points of a move: farther, nearer, behind, here; then at random.
         """
-        steps = max(self.ramp_steps // 16, 12)
+        steps = 12
         whole = self.clocks(3 * steps)
         others = (3 * steps, steps // 2, -steps, 0, steps, steps + 1, steps - 1)
-        points = [(part, target) for target in others for part in range(1, 9)]
-        chosen = self._thinned(range(len(points)), 2 * whole)
+        points = [(part, target) for part in range(1, 9) for target in others]
+        chosen = self._thinned(range(len(points)), whole)
         for part, target in (points[number] for number in chosen):
             yield self.call(CallKind.SET_POSITION, 0)
             yield self.call(CallKind.MOVE_TO, steps)
             yield Wait(self.clocks(steps) * part // 8)
             yield self.call(CallKind.MOVE_TO, target)
             yield self.read
-            yield Wait(2 * whole)
+            yield Wait(whole)
             yield self.read
+        random = Random(_SEED)  # noqa: S311 - repeatable, not secret
+        for _ in range(_RANDOM_TARGETS):
+            yield self.call(CallKind.MOVE_TO, random.randrange(-2 * steps, self.ramp_steps + steps))
+            yield Wait(random.randrange(1, _BUDGET_CYCLES // _RANDOM_TARGETS))
+            yield self.read
+        yield self.call(CallKind.HALT)
 
     def _speeds(self) -> Iterator[Action]:
         """
@@ -278,12 +289,13 @@ class AxisSketch:
             2 * first,
             2 * self._cruise_256,
         ):
-            yield Wait(min(ramp // 4, _BUDGET_CYCLES // 8) + self._first // 2)
+            yield Wait(min(ramp // 8, _BUDGET_CYCLES // 8) + self._first // 2)
             yield self.pace(interval)
             yield self.read
-        yield Wait(ramp // 4)
+        yield Wait(ramp // 8)
         yield self.call(CallKind.STOP)
-        yield Wait(ramp)
+        yield Wait(ramp // 2)
+        yield self.call(CallKind.HALT)
         yield self.pace(2 * first)
         yield self.call(CallKind.MOVE, 3)
         yield Wait(self.clocks(3, 2 * first))
@@ -293,7 +305,7 @@ class AxisSketch:
         """
         Run either way, turn round, take that back, and stop.
         """
-        part = min(self.clocks(self.ramp_steps), _BUDGET_CYCLES) // 4 + 2 * self._first
+        part = min(self.clocks(self.ramp_steps), _BUDGET_CYCLES) // 8 + 2 * self._first
         for kind in (
             CallKind.RUN_FORWARD,
             CallKind.RUN_BACKWARD,
@@ -334,7 +346,9 @@ class AxisSketch:
             if ending:
                 yield self.call(ending)
                 yield self.read
-            yield Wait(self.clocks(5) + sum(self.clocks(2 * place + 1) for place in targets))
+                yield Wait(self.clocks(5))
+            else:
+                yield Wait(sum(self.clocks(place) for place in range(7, 2 * len(targets), 2)))
             yield self.read
         yield self.call(CallKind.RUN_FORWARD)
         yield self.call(CallKind.QUEUE_MOVE_TO, 2)
