@@ -43,6 +43,7 @@ WITH_STEPS = frozenset(
     {CallKind.MOVE_TO, CallKind.MOVE, CallKind.QUEUE_MOVE_TO, CallKind.SET_POSITION}
 )
 SILENCES = 0.02  # how often the sketch says nothing for as long as a command time-out
+LONGEST_WAIT, LONGEST_AXIS_WAIT = 17, 18.5  # as powers of two, in clocks; an axis has a way to go
 COMMANDS = 300  # each followed by a wait of up to a few periods
 FIRST_SEED = 20_260_101
 CAMPAIGN_SEEDS = 40  # 12 000 commands for each kind of spec
@@ -101,7 +102,8 @@ def random_scenario(seed: int, plan: Plan) -> Scenario:
         timed = plan.motors[motor].command_timeout_ms
         of_kind = random_axis_command if is_axis(plan.motors[motor]) else random_command
         actions.append(of_kind(random, motor, plan))
-        actions.append(Wait(int(2 ** random.uniform(4, 17))))
+        longest = LONGEST_AXIS_WAIT if is_axis(plan.motors[motor]) else LONGEST_WAIT
+        actions.append(Wait(int(2 ** random.uniform(4, longest))))
         if timed and random.random() < SILENCES:
             actions.append(Wait(timed * plan.board.f_cpu_hz // 1000))
         actions.append(Call(CallKind.READ, motor))
