@@ -37,7 +37,7 @@ class MotorFacts:
             ``millis()`` counts; None for ever.
         sees_passed: Whether a step counts as missed that is due before the one before it is made.
         ladder: The intervals that an axis climbs through, None for a motor that is none.
-        cruise_256: The shortest interval of an axis after Init, in 1/256 clock.
+        cruise_256: The shortest interval that an axis accepts, in 1/256 clock, and that after Init.
         queue: How many destinations of an axis can wait.
     """
 

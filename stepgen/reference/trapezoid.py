@@ -250,7 +250,7 @@ class TrapezoidModel:
             self._axis.switch(call.cycle, on=False, call_index=len(self._codes))
 
     def _set_pace(self, call: SetPace) -> Code:
-        if call.interval_256 < self._facts.minimum_cycles * FRACTIONS:
+        if call.interval_256 < self._facts.cruise_256:
             return Code.TOO_FAST
         self._climb.change_cruise(call.interval_256)
         return Code.FINE

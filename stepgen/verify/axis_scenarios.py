@@ -56,7 +56,6 @@ class AxisSketch:
         self._index = index
         self._queue = motor.motion.queue
         self._cruise_256 = motor.motion.cruise_interval_256
-        self._minimum_256 = plan.minimum_period_cycles * FRACTIONS
         self._ladder = ladder
         self._period = self._cruise_256 // FRACTIONS
         goal = self._ladder.levels[self._ladder.goal(self._cruise_256)]
@@ -95,7 +94,7 @@ class AxisSketch:
         """
         Return the call that sets its shortest interval, within what it accepts.
         """
-        within = min(max(interval_256, self._minimum_256), 0xFFFF_FFFF)
+        within = min(max(interval_256, self._cruise_256), 0xFFFF_FFFF)
         return Call(CallKind.SET_PACE, self._index, top=within)
 
     @property
@@ -282,9 +281,9 @@ class AxisSketch:
             2 * self._cruise_256,
             self._cruise_256,
             3 * self._cruise_256 + 1,
-            self._minimum_256,
-            first - 1,
             self._cruise_256 + 1,
+            first - 1,
+            self._cruise_256,
             first + 5,
             2 * first,
             2 * self._cruise_256,
@@ -358,7 +357,7 @@ class AxisSketch:
         """
         Ask for what it refuses, at rest and while it runs.
         """
-        too_fast = (self._minimum_256 - 1, 0, 1, FRACTIONS)
+        too_fast = (self._cruise_256 - 1, 0, 1, FRACTIONS)
         for kind in (None, CallKind.RUN_FORWARD):
             if kind:
                 yield self.call(kind)
@@ -448,10 +447,11 @@ class AxisSketch:
         Go to and fro while the sketch does all that it may do.
         """
         lengths = (1, 2, 3, 40, self.ramp_steps // 4 + 1, self.ramp_steps + 1)
-        yield from self._moves(self._thinned(lengths, 2 * self.clocks(lengths[-1])))
-        yield self.call(CallKind.MOVE, 500)
+        yield from self._moves(self._thinned(lengths, 4 * self.clocks(lengths[-1])))
+        steps = min(500, _BUDGET_CYCLES // (12 * self._period))
+        yield self.call(CallKind.MOVE, steps)
         yield self.pace(3 * self._cruise_256)
-        yield Wait(self.clocks(500, 3 * self._cruise_256))
+        yield Wait(self.clocks(steps, 3 * self._cruise_256))
         yield self.read
 
 

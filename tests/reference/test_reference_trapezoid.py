@@ -403,13 +403,13 @@ def test_a_pace_slower_than_the_first_interval_is_that_of_level_0() -> None:
 
 def test_a_pace_that_is_too_fast_is_refused() -> None:
     """
-    And nothing is cut: the two steps of a level go on.
+    The cruise speed of the spec is the highest. Nothing is cut: the two steps of a level go on.
     """
-    model = started(MoveTo(1_000, 40), SetPace(4_000, (200 << 8) - 1))
+    model = started(MoveTo(1_000, 40), SetPace(4_000, (600 << 8) - 1))
 
     assert model.return_codes[-1] == Code.TOO_FAST
     assert steps(model, 6_000) == [2_000, 2_900, 3_700, 4_400, 5_100, 5_750]
-    assert model.apply(SetPace(6_000, 200 << 8)) == Code.FINE
+    assert model.apply(SetPace(6_000, 600 << 8)) == Code.FINE
     assert model.apply(SetPace(6_100, 0xFFFF_FFFF)) == Code.FINE
 
 
