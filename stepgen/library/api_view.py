@@ -12,6 +12,7 @@ from stepgen.plan.model import MotorPlan, Plan
 
 _CHANGING = frozenset({"update-events"})
 _ALL = frozenset({"constant", "update-events"})
+_AXES = frozenset({"trapezoid"})
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,7 @@ CALL_CYCLES = 1000
 
 _CODES = (
     _Name("MOTOR_ERROR_TOO_FAST", -1, "below MOTOR_MIN_TOP"),
+    _Name("MOTOR_ERROR_TOO_FAST", -1, "above the cruise speed of the spec", _AXES),
     _Name("MOTOR_ERROR_TOO_SLOW", -2, "above MOTOR_MAX_TOP"),
     _Name(
         "MOTOR_ERROR_CONTROL",
@@ -70,16 +72,28 @@ _CODES = (
         frozenset({"constant"}),
     ),
     _Name("MOTOR_ERROR_UPDATE", -4, "modification, interval or count of events is 0", _CHANGING),
-    _Name("MOTOR_ERROR_RUNNING", -5, "not while the motor runs"),
+    _Name("MOTOR_ERROR_RUNNING", -5, "not while the motor runs", _ALL | _AXES),
+    _Name("MOTOR_ERROR_QUEUE_FULL", -6, "no place is left for the move", _AXES),
     _Name("MOTOR_WARN_NOT_ENABLED", 1, "a speed without MOTOR_CTRL_DRV_EN: the motor stops"),
 )
 _FUNCTIONS = ("ShieldInit", "SetSpeed", "ReadStatus", "ReadPosition")
+_AXIS_FUNCTIONS = (
+    *("Init", "MoveTo", "Move", "RunForward", "RunBackward", "Stop", "Halt", "SetSpeed"),
+    *("CurrentPosition", "TargetPosition", "DistanceToGo", "IsRunning", "SetCurrentPosition"),
+)
+_AXIS_SWITCH_FUNCTIONS = ("EnableOutputs", "DisableOutputs")
+_QUEUE_FUNCTIONS = ("QueueMoveTo",)
 _SWITCH_CODES = {"MOTOR_ERROR_RUNNING"}
+_QUEUE_CODES = {"MOTOR_ERROR_QUEUE_FULL"}
 _SWITCH_FUNCTIONS = ("Hold", "Release")
 _MISSED_BITS = {"MOTOR_STAT_MISSED"}
 _MISSED_FUNCTIONS = ("ReadMissed",)
 _TIMED_FUNCTIONS = ("KeepAlive", "TimedOut")
 _CHANGING_FUNCTIONS = ("TimerUpdateCheck", "CallBackPositionReached", "CallBackFault")
+_API_FUNCTIONS = {
+    "motor": ("motorTimerGetIOclocksPerSecond", "motorTimerCalcPerSecond"),
+    "axis": ("motorInterval",),
+}
 _RANGE = ("MOTOR_MIN_TOP", "MOTOR_MAX_TOP")
 
 
@@ -108,18 +122,44 @@ def function_names(plan: Plan) -> tuple[str, ...]:
     """
     Return all functions, those of the library first.
     """
-    names = ["motorTimerGetIOclocksPerSecond", "motorTimerCalcPerSecond"]
+    names = [name for api in api_names(plan) for name in _API_FUNCTIONS[api]]
     for motor in plan.motors:
-        parts: tuple[str, ...] = _FUNCTIONS
-        parts += _MISSED_FUNCTIONS if tells_missed(motor) else ()
-        parts += _SWITCH_FUNCTIONS if motor.switches_current else ()
-        parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
-        parts += _TIMED_FUNCTIONS if motor.command_timeout_ms is not None else ()
-        parts += ("StepsForTurns",) if motor.steps_per_turn is not None else ()
-        parts += lengths.FUNCTIONS if motor.steps_per_mm is not None else ()
-        names += [f"{motor.name}{part}" for part in parts]
+        names += [f"{motor.name}{part}" for part in _parts(motor)]
         names += [dump_name(motor)] if motor.motion.dumps else []
     return tuple(names)
+
+
+def _parts(motor: MotorPlan) -> tuple[str, ...]:
+    """
+    Return the functions of *motor*, without its name before them.
+    """
+    missed = _MISSED_FUNCTIONS if tells_missed(motor) else ()
+    turns = ("StepsForTurns",) if motor.steps_per_turn is not None else ()
+    if motor.motion.ladder:
+        parts = (*_AXIS_FUNCTIONS, *missed)
+        parts += _AXIS_SWITCH_FUNCTIONS if motor.switches_current else ()
+        parts += _QUEUE_FUNCTIONS if motor.motion.queue else ()
+        return (*parts, *turns)
+    parts = (*_FUNCTIONS, *missed)
+    parts += _SWITCH_FUNCTIONS if motor.switches_current else ()
+    parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
+    parts += _TIMED_FUNCTIONS if motor.command_timeout_ms is not None else ()
+    parts += turns
+    return (*parts, *(lengths.FUNCTIONS if motor.steps_per_mm is not None else ()))
+
+
+def init_name(motor: MotorPlan) -> str:
+    """
+    Return the function that prepares *motor*.
+    """
+    return f"{motor.name}{_AXIS_FUNCTIONS[0] if motor.motion.ladder else _FUNCTIONS[0]}"
+
+
+def api_names(plan: Plan) -> tuple[str, ...]:
+    """
+    Return the sets of functions that motors of *plan* have, by the names of their partials.
+    """
+    return tuple(sorted({"axis" if motor.motion.ladder else "motor" for motor in plan.motors}))
 
 
 def tells_missed(motor: MotorPlan) -> bool:
@@ -141,20 +181,26 @@ def constant_names(plan: Plan) -> tuple[str, ...]:
     Return all constants of the header.
     """
     used = _used((*_CONTROL_BITS, *_STATUS_BITS, *_CODES), plan)
-    return (*(name.name for name in used), *_RANGE)
+    names = dict.fromkeys(name.name for name in used)
+    return (*names, *(_RANGE if "motor" in api_names(plan) else ()))
 
 
 def _used(names: Iterable[_Name], plan: Plan) -> tuple[_Name, ...]:
     kinds = {motor.motion.kind for motor in plan.motors}
     unused: set[str] = set()
-    if not any(motor.switches_current for motor in plan.motors):
+    if not any(motor.motion.queue for motor in plan.motors):
+        unused |= _QUEUE_CODES
+    if not any(motor.switches_current or motor.motion.ladder for motor in plan.motors):
         unused |= _SWITCH_CODES
     if not any(tells_missed(motor) for motor in plan.motors):
         unused |= _MISSED_BITS
-    return tuple(name for name in names if name.motions & kinds and name.name not in unused)
+    used = (name for name in names if name.motions & kinds and name.name not in unused)
+    return tuple({name.name: name for name in used}.values())
 
 
 def _definitions(kind: str, names: tuple[_Name, ...]) -> tuple[Definition, ...]:
+    if not names:
+        return ()
     texts = [f"constexpr {kind} {name.name} = {_value(kind, name.value)};" for name in names]
     width = max(len(text) for text in texts)
     return tuple(

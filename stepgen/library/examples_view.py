@@ -139,7 +139,8 @@ def examples_view(plan: Plan) -> ExamplesView:
     beside_names = neighbour_names(beside)
     owner = serial_owner(plan)
     ways = _ways(plan)
-    typed = (_console(plan, names), *([_wiring_test(coils)] if coils else []))
+    console = _console(plan, names)
+    typed = (*([console] if console else []), *([_wiring_test(coils)] if coils else []))
     return ExamplesView(
         sketches=(
             Example("Smallest", "Smallest", f"{names} from the start, for ever: where to begin"),
@@ -193,8 +194,14 @@ def _baud(plan: Plan) -> int:
     return _BAUD if plan.board.f_cpu_hz >= _FAST_HZ else _BAUD // 2
 
 
-def _console(plan: Plan, names: str) -> Example:
-    template = "ConsoleOfSeveral" if plan.motors[1:] else "Console"
+def _console(plan: Plan, names: str) -> Example | None:
+    """
+    Return the console: of axes, of one other motor or of several; none where both kinds are.
+    """
+    axes = [motor for motor in plan.motors if motor.motion.ladder]
+    if axes and len(axes) < len(plan.motors):
+        return None
+    template = "AxisConsole" if axes else "ConsoleOfSeveral" if plan.motors[1:] else "Console"
     return Example(
         "Console",
         template,
@@ -267,7 +274,8 @@ def _ramp(motor: MotorPlan, plan: Plan) -> Ramp | None:
 def _console_row(motor: MotorPlan, ramp: str) -> ConsoleRow:
     if not motor.switches_current:
         return ConsoleRow(motor.name, "nullptr", "nullptr", ramp)
-    return ConsoleRow(motor.name, f"{motor.name}Hold", f"{motor.name}Release", ramp)
+    on, off = ("EnableOutputs", "DisableOutputs") if motor.motion.ladder else ("Hold", "Release")
+    return ConsoleRow(motor.name, f"{motor.name}{on}", f"{motor.name}{off}", ramp)
 
 
 def _has_order(motor: MotorPlan) -> bool:

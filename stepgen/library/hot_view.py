@@ -60,8 +60,14 @@ def operand_lines(motor: MotorPlan) -> tuple[Line, ...]:
         operands.append(f'[ring] "i"({motor.name}Ring)')
     for index, register in enumerate(kernel.registers):
         operands.append(_register_operand(f"port{index}", register))
-    *others, last = operands
+    used = "".join(line.text for line in _every_instruction(motor))
+    *others, last = (text for text in operands if f"%{text.partition(' ')[0]}" in used)
     return (*(Line(text, ",") for text in others), Line(last, ""))
+
+
+def _every_instruction(motor: MotorPlan) -> tuple[Instruction, ...]:
+    path = motor.hot_path
+    return (*path.usual, *path.late, *path.boundary, *path.clock)
 
 
 def _line(instruction: Instruction) -> Line:

@@ -4,7 +4,8 @@ The view of one motor: names, masks and numbers as finished text.
 
 from dataclasses import dataclass
 
-from stepgen.library.api_view import dump_name, tells_missed
+from stepgen.library.api_view import dump_name, init_name, tells_missed
+from stepgen.library.axis_view import AxisView, axis_view
 from stepgen.library.examples_view import example_speed_sps
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
 from stepgen.library.kernel_view import KernelView, kernel_view
@@ -65,6 +66,8 @@ class MotorView:
 
     name: str
     title: str
+    init: str
+    axis: AxisView | None
     summary: str
     wiring: tuple[str, ...]
     init_comment: tuple[str, ...]
@@ -89,7 +92,6 @@ class MotorView:
     variables: tuple[Named, ...]
     releases: bool
     switches: bool
-    axis: None
     holds: bool
     wake_top: str
     need: Need | None
@@ -121,6 +123,8 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
     return MotorView(
         name=motor.name,
         title=motor.name[0].upper() + motor.name[1:],
+        init=init_name(motor),
+        axis=axis_view(motor, need, board.f_cpu_hz),
         summary=summary(motor),
         wiring=(*wiring(motor, board), *comment_lines(sharing_note(motor, need, plan))),
         init_comment=init_comment(motor),
@@ -147,7 +151,6 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         need=need,
         sharers=need.others if need else (),
         switches=motor.switches_current,
-        axis=None,
         holds=motor.switches_current and not motor.releases_at_rest,
         wake_top=f"{motor.wake_cycles}UL",
         switch_on=switched(drive.enables, mcu, active=True),

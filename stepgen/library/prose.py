@@ -133,16 +133,30 @@ def init_comment(motor: MotorPlan) -> tuple[str, ...]:
     )
 
 
+def axis_start_comment(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> tuple[str, ...]:
+    """
+    Return what happens at the start and at the end of a move, as lines of a comment.
+    """
+    energised = "the coils are energised at once and " if motor.switches_current else ""
+    return comment_lines(
+        f"From rest {energised}the first step comes one interval later{_wake(motor, f_cpu_hz)}. "
+        f"{_rest_comment(motor, need)} Always returns 0."
+    )
+
+
+def _wake(motor: MotorPlan, f_cpu_hz: int) -> str:
+    wake_ms = motor.wake_cycles / f_cpu_hz * 1000
+    return f", {wake_ms:.6g} ms at least, since the driver has to wake up" if wake_ms else ""
+
+
 def start_comment(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> tuple[str, ...]:
     """
     Return what happens at a start from rest, in mid-run and at the end, as lines of a comment.
     """
     energised = "the coils are energised at once and " if motor.switches_current else ""
-    wake_ms = motor.wake_cycles / f_cpu_hz * 1000
-    wake = f", {wake_ms:.6g} ms at least, since the driver has to wake up" if wake_ms else ""
     return comment_lines(
-        f"From rest {energised}the first step comes one interval later{wake}. While the motor "
-        "runs, the interval in progress ends as it was; the step at its end is the first of the "
+        f"From rest {energised}the first step comes one interval later{_wake(motor, f_cpu_hz)}. "
+        "While the motor runs, the interval in progress ends as it was; the step at its end is the first of the "
         f"new motion. {_rest_comment(motor, need)}"
     )
 

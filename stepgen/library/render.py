@@ -116,6 +116,7 @@ def _partials(made: Environment, view: LibraryView) -> dict[str, object]:
 
     timings = {name for m in view.motors for name in (m.timing_name, m.timer.shared_by)}
     return {
+        "apis": modules("apis", set(view.api_names)),
         "kernels": modules("kernels", {motor.kernel_name for motor in view.motors}),
         "timings": modules("timings", timings),
         "motions": modules("motions", {motor.motion_name for motor in view.motors}),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from stepgen import __version__
 from stepgen.library.api_view import (
     Definition,
+    api_names,
     codes,
     constant_names,
     control_bits,
@@ -71,6 +72,7 @@ class LibraryView:
     watches_clock: bool
     releases: bool
     dumps: bool
+    api_names: tuple[str, ...]
     timing_names: tuple[str, ...]
     needs_comment: tuple[str, ...]
     motors: tuple[MotorView, ...]
@@ -121,6 +123,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         watches_clock=any(motor.motion.watches_clock for motor in plan.motors),
         releases=any(motor.releases for motor in motors),
         dumps=any(motor.motion.dumps for motor in plan.motors),
+        api_names=api_names(plan),
         timing_names=tuple(sorted({motor.timer.shared_by for motor in motors})),
         needs_comment=needs_comment(plan),
         motors=motors,

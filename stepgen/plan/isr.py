@@ -5,6 +5,7 @@ The hot path is written as instructions with their cycles (AVR instruction set m
 its length is known before anything is compiled.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from stepgen.devices import Mcu
@@ -38,6 +39,11 @@ class Motion:
             limit in milliseconds is over.
         setting_cycles: What of *handler_cycles* goes into setting the timer anew.
         masked_setting_cycles: The same of *masked_cycles*.
+        forms: The forms of timings that it can run on, by their module, and the form that each then
+            has; None where all are as they are.
+        ladder: The ramp of its moves, else None.
+        queue: How many moves can wait.
+        cruise_interval_256: The interval at its cruise speed, in 1/256 clocks.
     """
 
     kind: str
@@ -52,6 +58,7 @@ class Motion:
     setting_cycles: int = 0
     masked_setting_cycles: int = 0
     changes_speed: bool = False
+    forms: Mapping[str, str] | None = None
     ladder: Ladder | None = None
     queue: int = 0
     cruise_interval_256: int = 0
@@ -152,7 +159,7 @@ def compose(
     reti = Instruction("reti", mcu.response_cycles)
     ending = (*end_code(kernel, leave, total_cycles(punctual)), reti)
     late = _late(end_code(kernel, leave, total_cycles(punctual)), handler) if gate.check else ()
-    count = (*count, *_to_boundary((*step, *punctual, *ending, *late)))
+    count = (*count, *to_boundary((*step, *punctual, *ending, *late)))
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
     until_gate = arrival + total_cycles(entry)
     until_count = until_gate + gate.step_cycles + total_cycles(look)
@@ -178,8 +185,8 @@ def compose(
         lap_cycles=tuple(until_gate + cycles for cycles in gate.lap_cycles),
         overrun_cycles=None if overrun is None else overrun - until_gate,
         clock_cycles=usual_cycles + looked,
-        edge_cycles=until_step + _cycles_to_edge(step),
-        boundary_edge_cycles=until_rare_step + looked + _cycles_to_edge(step),
+        edge_cycles=until_step + cycles_to_edge(step),
+        boundary_edge_cycles=until_rare_step + looked + cycles_to_edge(step),
         boundary_entry_cycles=until_rare_step
         + looked
         + total_cycles(rare_step + out)
@@ -213,7 +220,7 @@ def _late(ending: tuple[Instruction, ...], handler: str) -> tuple[Instruction, .
     return (replace(first, label="13"), *rest, Instruction(f"jmp   {handler}_late", 3))
 
 
-def _to_boundary(between: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
+def to_boundary(between: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
     """
     Return the way to label 1, behind *between*: BREQ reaches 63 words, RJMP further.
     """
@@ -251,7 +258,10 @@ def _clock_watch() -> tuple[tuple[Instruction, ...], tuple[Instruction, ...]]:
     return look, clock
 
 
-def _cycles_to_edge(step: tuple[Instruction, ...]) -> int:
+def cycles_to_edge(step: tuple[Instruction, ...]) -> int:
+    """
+    Return the cycles of *step* up to the end of the write that makes it.
+    """
     last = max(i for i, line in enumerate(step) if "%[port" in line.text and _writes(line))
     return total_cycles(step[: last + 1])
 

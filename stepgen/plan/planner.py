@@ -3,6 +3,7 @@ From a spec to a plan: boards, pins, timers, kernels, and every conflict between
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from stepgen.devices import Board, boards, find_board
@@ -16,8 +17,10 @@ from stepgen.plan.claims import (
 from stepgen.plan.drives import plan_drive
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Storage, allocate
-from stepgen.plan.isr import compose
+from stepgen.plan.isr import Motion, compose
 from stepgen.plan.kernels import Drive, choose_kernel
+from stepgen.plan.ladder import FRACTION
+from stepgen.plan.ladder_isr import compose_ladder
 from stepgen.plan.limits import (
     Chip,
     everything,
@@ -234,12 +237,18 @@ def _plan_motor(
             "the driver has no ENABLE, so that nothing can switch its coils off; add "
             "`at_rest: hold`, or give `enable` a pin"
         )
-    if not (drive and timing and kernel):
+    motion = plan_motion(motor, board.f_cpu_hz, faults)
+    if timing and motion:
+        timing = _form(timing, motion, faults.at("timing"))
+    if not (drive and timing and kernel and motion):
         return None
     # avr-gcc takes a function for an interrupt handler only when it is called __vector...
     handler = f"__vector_{name}_boundary"
-    motion = plan_motion(motor.motion, timed=motor.command_timeout_ms is not None)
     gate = plan_gate(timing, motion, storage, board.mcu)
+    if motion.ladder:
+        hot_path = compose_ladder(kernel, storage, board.mcu, handler, gate)
+    else:
+        hot_path = compose(kernel, storage, board.mcu, handler, gate, motion)
     return MotorPlan(
         name=name,
         motion=motion,
@@ -249,14 +258,39 @@ def _plan_motor(
         storage=storage,
         handler=handler,
         gate=gate,
-        hot_path=compose(kernel, storage, board.mcu, handler, gate, motion),
+        hot_path=hot_path,
         steps_per_turn=_steps_per_turn(motor, drive),
         steps_per_mm=motor.steps_per_mm,
         releases_at_rest=motor.at_rest == "release",
         owns_ports=motor.port == "owned",
-        wish_steps_per_second=motor.max_steps_per_second,
+        wish_steps_per_second=_wish(motor, motion, board),
         command_timeout_ms=motor.command_timeout_ms,
     )
+
+
+def _form(timing: TimerPlan, motion: Motion, faults: Faults) -> TimerPlan | None:
+    """
+    Return *timing* in the form that *motion* needs; None after reporting that it has none.
+    """
+    if motion.forms is None:
+        return timing
+    form = motion.forms.get(timing.module)
+    if form is None:
+        faults.report(
+            f"{motion.kind} needs a compare channel of a 16-bit timer; write "
+            "`timing: {kind: compare, timer: 1}`"
+        )
+        return None
+    return replace(timing, form=form)
+
+
+def _wish(motor: Motor, motion: Motion, board: Board) -> Fraction | None:
+    """
+    Return the highest rate that the sketch will ask for: with ramps that of their top.
+    """
+    if motion.ladder:
+        return Fraction(board.f_cpu_hz * FRACTION, motion.cruise_interval_256)
+    return motor.max_steps_per_second
 
 
 def _steps_per_turn(motor: Motor, drive: Drive) -> Fraction | None:

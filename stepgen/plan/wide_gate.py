@@ -24,25 +24,21 @@ def wide_gate(timing: TimerPlan, motion: Motion, storage: Storage) -> Gate:
     """
     Return the fragments of the compare channel of *timing*.
     """
-    timer = timing.timer
-    if not isinstance(timer, Timer16):
-        raise TypeError(f"timer {timer.number} has not 16 bits")
-    ocr, _ = timer.compare_channels[timing.channel]
     gate = Gate(
-        boundary=_laps(),
+        boundary=laps(),
         advance=_advance(),
-        check=(*_passed(), Instruction("pop   r25", 2), Instruction("brpl  13f", 1)),
+        check=(*passed(), Instruction("pop   r25", 2), Instruction("brpl  13f", 1)),
         handler_cycles=_HANDLER_CYCLES,
         masked_cycles=_MASKED_CYCLES,
         tells_missed=True,
-        registers=(*_bytes("ocr", ocr), *_bytes("tcnt", timer.tcnt)),
+        registers=channel_registers(timing),
         fields=(("due", "due"), ("ticks", "next.ticks"), ("laps", "lapsLeft")),
     )
     if not motion.can_go_on:
         return gate
     return replace(
         gate,
-        go_on=(*_passed(), Instruction("brpl  16f", 1), *_no_laps(), *_next_run(storage)),
+        go_on=(*passed(), Instruction("brpl  16f", 1), *_nolaps(), *_next_run(storage)),
         out=(Instruction("pop   r25", 2, label="16"),),
         look=_look(storage),
         fields=(
@@ -54,13 +50,24 @@ def wide_gate(timing: TimerPlan, motion: Motion, storage: Storage) -> Gate:
     )
 
 
+def channel_registers(timing: TimerPlan) -> tuple[tuple[str, Register], ...]:
+    """
+    Return the bytes of the compare register and of the counter of *timing*, by operand.
+    """
+    timer = timing.timer
+    if not isinstance(timer, Timer16):
+        raise TypeError(f"timer {timer.number} has not 16 bits")
+    ocr, _ = timer.compare_channels[timing.channel]
+    return (*_bytes("ocr", ocr), *_bytes("tcnt", timer.tcnt))
+
+
 def _bytes(name: str, register: Register) -> tuple[tuple[str, Register], ...]:
     low = Register(f"{register.name}L", register.address)
     high = Register(f"{register.name}H", register.address + 1)
     return (f"{name}Low", low), (f"{name}High", high)
 
 
-def _laps() -> tuple[Instruction, ...]:
+def laps() -> tuple[Instruction, ...]:
     """
     Return what keeps an interrupt that ends a lap away from the step.
     """
@@ -95,7 +102,7 @@ def _advance() -> tuple[Instruction, ...]:
     )
 
 
-def _passed() -> tuple[Instruction, ...]:
+def passed() -> tuple[Instruction, ...]:
     """
     Return what looks if the moment that was set has passed: not if negative. r25 is its low byte.
     """
@@ -108,7 +115,7 @@ def _passed() -> tuple[Instruction, ...]:
     )
 
 
-def _no_laps() -> tuple[Instruction, ...]:
+def _nolaps() -> tuple[Instruction, ...]:
     """
     Return what leads to the handler where the interval that has begun, or the next one, has laps.
     """
@@ -153,7 +160,7 @@ def _look(storage: Storage) -> tuple[Instruction, ...]:
         Instruction("lds   r25, %[endMillis] + 1", 2),
         Instruction("sbc   r24, r25", 1),
         Instruction("brpl  16b", 1, "it is over"),
-        *(replace(one, text=one.text.replace("16f", "16b")) for one in _no_laps()),
+        *(replace(one, text=one.text.replace("16f", "16b")) for one in _nolaps()),
         Instruction("lds   r24, %[rest]", 2, "one step less"),
         Instruction("lds   r25, %[rest] + 1", 2),
         Instruction("sbiw  r24, 1", 2),

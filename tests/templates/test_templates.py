@@ -12,7 +12,7 @@ from jinja2 import UndefinedError, nodes
 from stepgen.library.render import environment, template_dir
 
 TEMPLATES = sorted(path for path in template_dir().rglob("*.j2"))
-PARTIALS = ("kernels", "timings", "motions", "others", "timeouts")
+PARTIALS = ("apis", "kernels", "timings", "motions", "others", "timeouts")
 MOST_IFS_PER_100_LINES = 6
 ARITHMETIC = (
     nodes.Add,

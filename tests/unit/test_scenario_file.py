@@ -11,30 +11,17 @@ from hypothesis import strategies as st
 
 from stepgen import api
 from stepgen.errors import StepgenError
-from stepgen.plan.ladder import Ladder
 from stepgen.plan.model import Plan
 from stepgen.verify.bench import OF_AXES, OF_EVERY_MOTOR, Call, CallKind, Context, Loop
 from stepgen.verify.scenario_file import default_scenario, load_scenario, scenario_text
 from stepgen.verify.scenarios import Action, Scenario, Wait
 
 SPECS = Path(__file__).parents[2] / "specs"
-
-
-def axis_plan() -> Plan:
-    """
-    Return a plan whose only motor is an axis with a queue; what its ramp is plays no part here.
-    """
-    plan = api.plan(SPECS / "uno_motor_shield.yaml")
-    motor = plan.motors[0]
-    motion = replace(motor.motion, kind="trapezoid", ladder=Ladder(1000 << 8, ()), queue=3)
-    return replace(plan, motors=(replace(motor, motion=motion),))
-
-
 CONSTANT = api.plan(SPECS / "mega_pan_tilt.yaml")
 TIMED = api.plan(SPECS / "uno_command_timeout.yaml")
 CHANGING = api.plan(SPECS / "uno_variable_speed.yaml")
 ALWAYS_ENABLED = api.plan(SPECS / "uno_drv8825.yaml")
-AXIS = axis_plan()
+AXIS = api.plan(SPECS / "uno_trapezoid.yaml")
 BYTES, WORDS, LONGS = (st.integers(0, (1 << bits) - 1) for bits in (8, 16, 32))
 LINES = st.text(st.characters(exclude_categories=("C", "Zl", "Zp")), min_size=1, max_size=40)
 

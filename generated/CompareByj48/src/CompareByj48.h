@@ -80,9 +80,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of port B with digitalWrite(), with single-bit sbi/cbi, or
 // inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10. A step that was already due when the
-// one before was made is made at once and counted, and MOTOR_STAT_MISSED is set; all others stay
-// where they are due. But after more than 32000 clocks with interrupts off a step, and all that
-// follow it, can come 65536 clocks late, and nothing tells.
+// one before was made is made at once and counted; all others stay where they are due. But after
+// more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536 clocks
+// late, and nothing tells.
 
 // Steps for whole turns, rounded: 4075.77 in each.
 constexpr uint32_t motorStepsForTurns(uint16_t turns) {

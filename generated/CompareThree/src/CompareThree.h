@@ -82,9 +82,9 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of ports D and F with digitalWrite(), with single-bit sbi/cbi,
 // or inside ATOMIC_BLOCK.
 // Timer 5 belongs to the motor: no analogWrite() on D46, D45 or D44. A step that was already due
-// when the one before was made is made at once and counted, and MOTOR_STAT_MISSED is set; all
-// others stay where they are due. But after more than 32000 clocks with interrupts off a step, and
-// all that follow it, can come 65536 clocks late, and nothing tells.
+// when the one before was made is made at once and counted; all others stay where they are due. But
+// after more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536
+// clocks late, and nothing tells.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
@@ -135,9 +135,9 @@ int8_t xRelease();
 // The sketch may change other bits of port F with digitalWrite(), with single-bit sbi/cbi, or
 // inside ATOMIC_BLOCK.
 // Timer 5 belongs to the motor: no analogWrite() on D46, D45 or D44. A step that was already due
-// when the one before was made is made at once and counted, and MOTOR_STAT_MISSED is set; all
-// others stay where they are due. But after more than 32000 clocks with interrupts off a step, and
-// all that follow it, can come 65536 clocks late, and nothing tells.
+// when the one before was made is made at once and counted; all others stay where they are due. But
+// after more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536
+// clocks late, and nothing tells.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
@@ -187,9 +187,9 @@ int8_t yRelease();
 //
 // The sketch may change other bits of ports K and L with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 5 belongs to the motor: no analogWrite() on D46, D45 or D44. A step that was already due
-// when the one before was made is made at once and counted, and MOTOR_STAT_MISSED is set; all
-// others stay where they are due. But after more than 32000 clocks with interrupts off a step, and
-// all that follow it, can come 65536 clocks late, and nothing tells.
+// when the one before was made is made at once and counted; all others stay where they are due. But
+// after more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536
+// clocks late, and nothing tells.
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off

@@ -4,14 +4,17 @@ What the planner knows of each motion: one module per kind, named like it.
 
 from importlib import import_module
 
+from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Motion
-from stepgen.spec.base import KindModel
+from stepgen.spec import Motor
 
 
-def plan_motion(spec: KindModel, *, timed: bool) -> Motion:
+def plan_motion(motor: Motor, f_cpu_hz: int, faults: Faults) -> Motion | None:
     """
-    Return what the motion of *spec* asks of the step interrupt, *timed* with a command time-out.
+    Return what the motion of *motor* asks of the step interrupt.
+
+    Returns None after reporting why it cannot be; *faults* are those of the motor.
     """
-    module = import_module(f"{__name__}.{spec.kind.replace('-', '_')}")
-    motion: Motion = module.plan(spec, timed=timed)
+    module = import_module(f"{__name__}.{motor.motion.kind.replace('-', '_')}")
+    motion: Motion | None = module.plan(motor.motion, motor, f_cpu_hz, faults)
     return motion

@@ -2,17 +2,20 @@
 Constant speed: the step interrupt needs no clock but for a command time-out.
 """
 
+from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Motion
+from stepgen.spec import Motor
 from stepgen.spec.motions.constant import Constant
 
 _TIMED_CYCLES = 4  # of the handler: IN or LDS, TST and BREQ
 _TIMED_CALL_CYCLES = 20
 
 
-def plan(spec: Constant, *, timed: bool) -> Motion:
+def plan(spec: Constant, motor: Motor, _f_cpu_hz: int, _faults: Faults) -> Motion:
     """
     Return what the motion asks of the step interrupt.
     """
+    timed = motor.command_timeout_ms is not None
     return Motion(
         kind=spec.kind,
         watches_clock=timed,

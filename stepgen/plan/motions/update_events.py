@@ -2,7 +2,9 @@
 Update events: each step compares the clock with the next moment at which something is due.
 """
 
+from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Motion
+from stepgen.spec import Motor
 from stepgen.spec.motions.update_events import UpdateEvents
 
 _TIMED_CYCLES = 60
@@ -11,10 +13,11 @@ _TIMED_LOOK_CYCLES = 19
 _TIMED_CALL_CYCLES = 30
 
 
-def plan(spec: UpdateEvents, *, timed: bool) -> Motion:
+def plan(spec: UpdateEvents, motor: Motor, _f_cpu_hz: int, _faults: Faults) -> Motion:
     """
     Return what the motion asks of the step interrupt.
     """
+    timed = motor.command_timeout_ms is not None
     return Motion(
         kind=spec.kind,
         watches_clock=True,

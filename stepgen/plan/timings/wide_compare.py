@@ -85,7 +85,7 @@ def plan_wide(
         largest_period_cycles=LARGEST_PERIOD_CYCLES,
         rule=(
             "A step that was already due when the one before was made is made at once and "
-            "counted, and MOTOR_STAT_MISSED is set; all others stay where they are due. But after "
+            "counted; all others stay where they are due. But after "
             f"more than {LONGEST_WAIT_CYCLES} clocks with interrupts off a step, and all that "
             "follow it, can come 65536 clocks late, and nothing tells."
         ),

@@ -1,0 +1,71 @@
+"""
+The view of a motor with ramps: its table, and what the header says of its moves.
+"""
+
+from dataclasses import dataclass
+
+from stepgen.library.prose import axis_start_comment
+from stepgen.library.sharing import Need
+from stepgen.library.text import comment_lines
+from stepgen.plan.ladder import FRACTION, Row
+from stepgen.plan.model import MotorPlan
+
+
+@dataclass(frozen=True)
+class AxisView:
+    """
+    The ramp of one motor as C text, and sentences about it.
+    """
+
+    prefix: str
+    queue: int
+    first_interval: str
+    cruise_interval: str
+    cruise_height: str
+    cruise_text: str
+    rows: tuple[str, ...]
+    ramp_comment: tuple[str, ...]
+    start_comment: tuple[str, ...]
+    halt_comment: str
+    queue_comment: str
+
+
+def axis_view(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> AxisView | None:
+    """
+    Return what the templates print of the ramp of *motor*; None if it has none.
+    """
+    ladder = motor.motion.ladder
+    if ladder is None:
+        return None
+    cruise = motor.motion.cruise_interval_256
+    cruise_sps = f_cpu_hz * FRACTION / cruise
+    goal = ladder.goal(cruise)
+    start = f"{float(ladder.start_sps):g}" if ladder.start_sps else "0"
+    return AxisView(
+        prefix=f"k{motor.name[0].upper()}{motor.name[1:]}",
+        queue=motor.motion.queue,
+        first_interval=f"{ladder.first_interval_256}UL",
+        cruise_interval=f"{cruise}UL",
+        cruise_height=str(goal),
+        cruise_text=f"{cruise_sps:.6g} steps/s",
+        rows=tuple(_row(row) for row in ladder.rows),
+        ramp_comment=comment_lines(
+            f"From {start} to {cruise_sps:.6g} steps/s at {float(ladder.acceleration):g} "
+            f"steps/s^2: {goal} steps. Row by row from the lowest speed on: the levels, the steps of each and "
+            "how much shorter the interval is from one to the next."
+        ),
+        start_comment=axis_start_comment(motor, need, f_cpu_hz),
+        halt_comment=" The coils go off." if motor.releases_at_rest else "",
+        queue_comment=" The queue is emptied." if motor.motion.queue else "",
+    )
+
+
+def _row(row: Row) -> str:
+    """
+    Return *row* as an initialiser, and what it stands for.
+    """
+    shifts = row.slope_bytes << 4 | row.steps.bit_length() - 1
+    return (
+        f"{{{row.levels}, {shifts:#04x}, {row.slope}}},  "
+        f"// {row.levels} x {row.steps}, {row.slope_256 / FRACTION:.6g} clocks"
+    )
