@@ -51,8 +51,8 @@ def axis_view(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> AxisView | 
         rows=tuple(_row(row) for row in ladder.rows),
         ramp_comment=comment_lines(
             f"From {start} to {cruise_sps:.6g} steps/s at {float(ladder.acceleration):g} "
-            f"steps/s^2: {goal} steps. Row by row from the lowest speed on: the levels, the steps of each and "
-            "how much shorter the interval is from one to the next."
+            f"steps/s^2: {goal} steps. Row by row from the lowest speed on: the levels, the "
+            "steps of each and how much shorter the interval is from one to the next."
         ),
         start_comment=axis_start_comment(motor, need, f_cpu_hz),
         halt_comment=" The coils go off." if motor.releases_at_rest else "",

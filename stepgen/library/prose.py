@@ -156,8 +156,8 @@ def start_comment(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> tuple[s
     energised = "the coils are energised at once and " if motor.switches_current else ""
     return comment_lines(
         f"From rest {energised}the first step comes one interval later{_wake(motor, f_cpu_hz)}. "
-        "While the motor runs, the interval in progress ends as it was; the step at its end is the first of the "
-        f"new motion. {_rest_comment(motor, need)}"
+        "While the motor runs, the interval in progress ends as it was; the step at its end is the "
+        f"first of the new motion. {_rest_comment(motor, need)}"
     )
 
 
