@@ -11,6 +11,7 @@ import pytest
 
 from stepgen.plan.model import Plan
 from stepgen.verify.bench import Call, CallKind, Loop, has_call, is_axis
+from stepgen.verify.scenario_model import fields_of
 from stepgen.verify.scenarios import Action, Scenario, Wait
 from tests.sim.kinds import KINDS
 from tests.sim.shrinking import Library
@@ -39,9 +40,6 @@ AXIS_WEIGHTS = {
     CallKind.READ: 10,
     CallKind.INIT: 1,
 }
-WITH_STEPS = frozenset(
-    {CallKind.MOVE_TO, CallKind.MOVE, CallKind.QUEUE_MOVE_TO, CallKind.SET_POSITION}
-)
 SILENCES = 0.02  # how often the sketch says nothing for as long as a command time-out
 LONGEST_WAIT, LONGEST_AXIS_WAIT = 17, 18.5  # as powers of two, in clocks; an axis has a way to go
 COMMANDS = 300  # each followed by a wait of up to a few periods
@@ -87,7 +85,7 @@ def random_axis_command(random: Random, motor: int, plan: Plan) -> Call:
     )
     if kind is CallKind.SET_PACE:
         return Call(kind, motor, top=pace)
-    return Call(kind, motor, steps=steps if kind in WITH_STEPS else 0)
+    return Call(kind, motor, steps=steps if "steps" in fields_of(kind) else 0)
 
 
 def random_scenario(seed: int, plan: Plan) -> Scenario:
