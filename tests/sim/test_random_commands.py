@@ -41,7 +41,7 @@ AXIS_WEIGHTS = {
     CallKind.INIT: 1,
 }
 SILENCES = 0.02  # how often the sketch says nothing for as long as a command time-out
-LONGEST_WAIT, LONGEST_AXIS_WAIT = 17, 18.5  # as powers of two, in clocks; an axis has a way to go
+LONGEST_WAIT, LONGEST_AXIS_WAIT = 17, 18  # as powers of two, in clocks; an axis has a way to go
 COMMANDS = 300  # each followed by a wait of up to a few periods
 FIRST_SEED = 20_260_101
 CAMPAIGN_SEEDS = 40  # 12 000 commands for each kind of spec
