@@ -5,7 +5,7 @@ The bits and codes of the contract (systems/1-motor-driver.md), and which motion
 from enum import IntEnum, IntFlag
 from typing import Literal
 
-MotionKind = Literal["constant", "update-events"]
+MotionKind = Literal["constant", "update-events", "trapezoid"]
 TimingKind = Literal["fast-pwm", "ctc", "compare", "wide-compare"]
 
 
@@ -28,6 +28,7 @@ ALL_CONTROL_BITS = 0xFF
 CONTROL_BITS: dict[MotionKind, int] = {
     "constant": Control.DRV_EN | Control.ENDPOINT_MILLIS | Control.DIRECTION,
     "update-events": ALL_CONTROL_BITS,
+    "trapezoid": 0,
 }
 
 
@@ -58,3 +59,4 @@ class Code(IntEnum):
     CONTROL = -3
     UPDATE = -4
     RUNNING = -5
+    QUEUE_FULL = -6

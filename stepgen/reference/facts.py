@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from stepgen.reference.contract import MotionKind, TimingKind
+from stepgen.reference.ladder import Ladder
 from stepgen.reference.sequences import Pattern
 from stepgen.reference.timer import FASTEST_CYCLES, SETTINGS, SLOWEST_CYCLES, TimerSetting
 
@@ -35,6 +36,9 @@ class MotorFacts:
         command_timeout_millis: How long after the last word of the sketch a step is still made, as
             ``millis()`` counts; None for ever.
         sees_passed: Whether a step counts as missed that is due before the one before it is made.
+        ladder: The intervals that an axis climbs through, None for a motor that is none.
+        cruise_256: The shortest interval that an axis accepts, in 1/256 clock, and that after Init.
+        queue: How many destinations of an axis can wait.
     """
 
     phases: tuple[Pattern, ...]
@@ -49,6 +53,9 @@ class MotorFacts:
     wake_cycles: int = 0
     command_timeout_millis: int | None = None
     sees_passed: bool = False
+    ladder: Ladder | None = None
+    cruise_256: int = 0
+    queue: int = 0
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from stepgen.reference.facts import ServiceCycle, SetCycle
 from stepgen.reference.stimuli import ChannelSet, ClockOn
 from stepgen.reference.timer import (
+    FRACTIONS,
     HALF_ROUND_CYCLES,
     TimerSetting,
     first_match_cycles,
@@ -78,9 +79,16 @@ class Pace:
         """
         set_cycle = self.set_cycle(deadline)
         following = self.deadline_cycle
-        if set_cycle is None or following is None or following - deadline >= HALF_ROUND_CYCLES:
+        if set_cycle is None or following is None or self.has_laps:
             return False
         return following <= set_cycle
+
+    @property
+    def has_laps(self) -> bool:
+        """
+        Tell whether the interval in progress is so long that the channel matches before its end.
+        """
+        return self.interval is not None and self.interval.period_cycles >= HALF_ROUND_CYCLES
 
     def lateness_cycles(self, deadline: int) -> int:
         """
@@ -102,3 +110,42 @@ class Pace:
         if service < deadline:
             raise ValueError(f"deadline {deadline} served too early, at {service}")
         return deadline if service <= cycle else None
+
+
+@dataclass
+class FinePace(Pace):
+    """
+    The same with intervals in 1/256 clock, whose fractions add up.
+
+    A channel matches at whole clocks: each 256 parts make a deadline come a clock later.
+
+    Args:
+        interval_256: The interval in progress.
+        fraction_256: What the deadline that ends it lacks of a whole clock, 0 to 255.
+    """
+
+    interval_256: int = 0
+    fraction_256: int = 0
+
+    def begin_256(self, interval_256: int) -> None:
+        """
+        Begin with *interval_256*; its deadline comes from the channel.
+        """
+        self.interval_256 = interval_256
+        whole, self.fraction_256 = divmod(interval_256, FRACTIONS)
+        self.begin(TimerSetting(1, whole))
+
+    def go_on_256(self, deadline: int, interval_256: int) -> None:
+        """
+        Go on from *deadline* with *interval_256*.
+        """
+        self.interval_256 = interval_256
+        whole, self.fraction_256 = divmod(self.fraction_256 + interval_256, FRACTIONS)
+        self.go_on(deadline, TimerSetting(1, whole))
+
+    @property
+    def has_laps(self) -> bool:
+        """
+        Tell whether the interval in progress is so long that the channel matches before its end.
+        """
+        return self.interval_256 // FRACTIONS >= HALF_ROUND_CYCLES

@@ -162,7 +162,102 @@ class Callbacks:
     fault: bool
 
 
+@dataclass(frozen=True)
+class MoveTo:
+    """
+    A call of an axis to go to *position*, int32.
+    """
+
+    cycle: int
+    position: int
+
+
+@dataclass(frozen=True)
+class Move:
+    """
+    A call of an axis to go *steps* on from where it is, int32.
+    """
+
+    cycle: int
+    steps: int
+
+
+@dataclass(frozen=True)
+class QueueMoveTo:
+    """
+    A call of an axis to go to *position*, int32, after all that was asked for before.
+    """
+
+    cycle: int
+    position: int
+
+
+@dataclass(frozen=True)
+class RunOn:
+    """
+    A call of an axis to go on for ever in *direction*, +1 or -1.
+    """
+
+    cycle: int
+    direction: int
+
+
+@dataclass(frozen=True)
+class Stop:
+    """
+    A call of an axis to come to rest as soon as its ramp allows.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class Halt:
+    """
+    A call of an axis to make no step any more.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class SetPace:
+    """
+    A call of an axis to make *interval_256*, in 1/256 clock, its shortest interval.
+    """
+
+    cycle: int
+    interval_256: int
+
+    def __post_init__(self) -> None:
+        _need("interval_256", self.interval_256, UINT32_STATES)
+
+
+@dataclass(frozen=True)
+class SetPosition:
+    """
+    A call of an axis to call *position*, int32, where it is.
+    """
+
+    cycle: int
+    position: int
+
+
 Call = SetSpeed | Hold | Release | Init
+AxisCall = (
+    MoveTo
+    | Move
+    | QueueMoveTo
+    | RunOn
+    | Stop
+    | Halt
+    | SetPace
+    | SetPosition
+    | Hold
+    | Release
+    | Init
+)
+AxisStimulus = AxisCall | ChannelSet | ClockOn | MillisTick
 Stimulus = Call | UpdateCheck | CallBack | KeepAlive | Callbacks | ClockOn | ChannelSet | MillisTick
 
 

@@ -17,6 +17,7 @@ COMPARE_PRESCALER = 8
 COUNTER_STATES = 65_536
 HALF_ROUND_CYCLES = COUNTER_STATES // 2
 LAP_CYCLES = COUNTER_STATES // 4
+FRACTIONS = 256  # of a clock, in the intervals of an axis
 SLOWEST_CYCLES = 65_535 * 1024
 FASTEST_CYCLES = 4  # mode 15 has at least 2 bits: OCRnA = 3 is the smallest TOP
 

@@ -10,12 +10,13 @@ from typing import Self
 
 from stepgen.devices import Register, Timer16
 from stepgen.errors import StepgenError
-from stepgen.plan.model import Plan, TimerPlan
+from stepgen.plan.model import MotorPlan, Plan, TimerPlan
 from stepgen.verify.events import Events
 from stepgen.verify.simulators import SIMAVR, Simulator
 
-_MAILBOX = Struct("<BBBBIIIHHHbBiHBBB")
+_MAILBOX = Struct("<BBBBIIIHHHbBiHBBBiiiB")
 _DELAY = Struct("<H")
+_RESULT, _WITHIN, _STEPS = 10, 15, 17  # their places in the mailbox
 _LOOP_OFFSET = 2
 _DELAY_OFFSET = 20
 _NO_CALL = 11  # the sketch goes through all of a call, but calls nothing
@@ -59,7 +60,10 @@ class Context(IntEnum):
 
 class CallKind(IntEnum):
     """
-    Which function is called: of a motor or, from 12 on, of the library, avr-libc or the sketch.
+    Which function is called: of a motor or, from 12 to 15, of the library, avr-libc or the sketch.
+
+    From 16 on they are those of an axis, which has READ, INIT, HOLD and RELEASE too, the last two
+    as ``EnableOutputs`` and ``DisableOutputs``. SET_PACE is its ``SetSpeed``, in 1/256 clock.
 
     HOLD_UP keeps interrupts off for four cycles *top* times, 65535 at most, and a few more.
     DIVIDE_CLOCK sets CLKPR: the clock is divided by 2 to the power of *control*. The last two
@@ -78,19 +82,56 @@ class CallKind(IntEnum):
     DIVIDE_CLOCK = 13
     TOP_PER_SECOND = 14
     CLOCKS_PER_SECOND = 15
+    MOVE_TO = 16
+    MOVE = 17
+    RUN_FORWARD = 18
+    RUN_BACKWARD = 19
+    STOP = 20
+    HALT = 21
+    SET_PACE = 22
+    QUEUE_MOVE_TO = 23
+    SET_POSITION = 24
 
 
 SWITCHING = frozenset({CallKind.HOLD, CallKind.RELEASE})
 """The calls that a motor does not have where nothing can switch its coils."""
 
-OF_NO_MOTOR = frozenset(kind for kind in CallKind if kind >= CallKind.HOLD_UP)
+OF_NO_MOTOR = frozenset(
+    kind for kind in CallKind if CallKind.HOLD_UP <= kind <= CallKind.CLOCKS_PER_SECOND
+)
 """The calls of the library as a whole, of avr-libc or of the sketch."""
+
+OF_AXES = frozenset(kind for kind in CallKind if kind >= CallKind.MOVE_TO)
+"""The calls that only an axis has."""
+
+OF_EVERY_MOTOR = SWITCHING | {CallKind.READ, CallKind.INIT}
+"""The calls that an axis and other motors have."""
+
+
+def is_axis(motor: MotorPlan) -> bool:
+    """
+    Tell whether *motor* is moved by the calls of an axis.
+    """
+    return motor.motion.kind == "trapezoid"
+
+
+def has_call(motor: MotorPlan, kind: CallKind) -> bool:
+    """
+    Tell whether the API of *motor* has the call *kind*, if it is one of a motor at all.
+    """
+    if kind is CallKind.QUEUE_MOVE_TO and is_axis(motor):
+        return motor.motion.queue > 0
+    if kind in OF_EVERY_MOTOR | OF_NO_MOTOR:
+        return kind not in SWITCHING or motor.switches_current
+    return (kind in OF_AXES) == is_axis(motor)
 
 
 @dataclass(frozen=True)
 class Call:
     """
     A call as the scenario asks for it.
+
+    *steps* are those of a call of an axis: a position, or how far it goes.
     """
 
     kind: CallKind
@@ -101,6 +142,7 @@ class Call:
     modification: int = 0
     interval: int = 0
     count: int = 0
+    steps: int = field(default=0, kw_only=True)
     context: Context = field(default=Context.LOOP, kw_only=True)
 
 
@@ -118,6 +160,9 @@ class Answer:
     position: int
     missed: int = 0
     timed_out: int = 0
+    target: int = 0
+    distance: int = 0
+    running: int = 0
 
 
 @dataclass
@@ -219,10 +264,8 @@ class Bench:
         return not self.machine.read_ram(self._mailbox + _WITHIN_OFFSET, 1)[0]
 
     def _answer(self, call: Call, begin: int, end: int) -> Answer:
-        *_, result, status, position, missed, timed_out, _, _ = _MAILBOX.unpack(
-            self.machine.read_ram(self._mailbox, _MAILBOX.size)
-        )
-        return Answer(call, begin, end, result, status, position, missed, timed_out)
+        seen = _MAILBOX.unpack(self.machine.read_ram(self._mailbox, _MAILBOX.size))
+        return Answer(call, begin, end, *seen[_RESULT:_WITHIN], *seen[_STEPS + 1 :])
 
     def events(self) -> Events:
         """
@@ -269,7 +312,9 @@ def mail(call: Call, loop: Loop) -> bytes:
     update = (call.modification, call.interval, call.count)
     arguments = (call.kind, call.motor, loop, call.control, call.top, call.limit, *update)
     within = 0 if call.context is Context.LOOP else call.kind
-    return _MAILBOX.pack(*arguments, 0, 0, 0, 0, 0, 0, within, call.context)
+    answer = (0,) * (_WITHIN - _RESULT)
+    more = (within, call.context, call.steps)
+    return _MAILBOX.pack(*arguments, 0, *answer, *more, 0, 0, 0)
 
 
 def watched_registers(plan: Plan) -> list[int]:

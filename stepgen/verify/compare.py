@@ -12,8 +12,8 @@ from stepgen.verify.drives import Levels
 from stepgen.verify.edges import wrong_positions
 from stepgen.verify.oracle import WAKE_CYCLES, Comparison, Oracle, Scene
 from stepgen.verify.pulses import broken_pulses
-from stepgen.verify.rules import broken_rules
-from stepgen.verify.standing import wrong_levels
+from stepgen.verify.rules import broken_rules, wrong_leg_starts
+from stepgen.verify.standing import with_dir_of, wrong_levels
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import PortState, Run
 
@@ -31,13 +31,15 @@ def compare(subject: Subject, index: int, scene: Scene) -> Comparison:
     result.needs, result.intervals = oracle.needs, oracle.intervals
     runs = oracle.served(runs)
     runs = within_tolerance(runs, edges, scene.tolerance_cycles)
+    result.turns = oracle.turns
     _compare_steps(subject, scene, runs, edges, result)
     _compare_calls(subject, scene, runs, edges, result)
     _compare_strangers(subject, scene, runs, result)
-    result.turns = oracle.turns
     for broken in broken_pulses(subject, scene, runs, edges, result.turns):
         result.report(broken)
     for broken in broken_rules(subject, index, scene, runs, edges, result.intervals):
+        result.report(broken)
+    for broken in wrong_leg_starts(subject, scene, oracle.starts):
         result.report(broken)
     for wrong in wrong_positions(subject, index, scene, runs):
         result.report(wrong)
@@ -70,6 +72,7 @@ def _compare_steps(
     Compare each edge that an interrupt makes: its cycle, its pattern, and the way there.
     """
     deadlines = {run.raised for run in runs}
+    turned = {turn.cycle for turn in result.turns} if subject.is_axis else set()
     _report_missing(scene, edges, deadlines, result)
     expected = {edge.deadline_cycle: edge for edge in edges if edge.deadline_cycle in deadlines}
     ports = scene.trace.ports_at(runs[0].entered) if runs else {}
@@ -80,9 +83,11 @@ def _compare_steps(
             ports[upcoming.port] = upcoming.value
             upcoming = next(events, None)
         before = subject.pattern(ports)
-        way = (before, *_play(subject, ports, run.writes, result))
+        way: tuple[Levels, ...] = (before, *_play(subject, ports, run.writes, result))
         edge = expected.get(run.raised)
         if edge:
+            if run.raised in turned:
+                way = tuple(with_dir_of(edge, seen) for seen in way)
             _compare_edge(subject, run, way, edge, result)
         elif any(seen != before for seen in way):
             result.report(f"a step at cycle {run.writes[-1].cycle} that nobody asked for")

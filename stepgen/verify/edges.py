@@ -8,8 +8,10 @@ reads the position must get the number of neighbours that went by.
 
 from collections.abc import Iterator, Sequence
 
+from stepgen.reference.axis import wrapped_int32
 from stepgen.verify.bench import CallKind
 from stepgen.verify.drives import Levels
+from stepgen.verify.happenings import PositionRead, masked_reads
 from stepgen.verify.oracle import Scene
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Run
@@ -23,17 +25,19 @@ def wrong_positions(
     """
     if not _can_be_counted(subject):
         return
-    position = 0
-    for cycle, seen, read in sorted(_happenings(subject, index, scene, runs), key=_cycle):
+    position = offset = 0
+    for cycle, seen, read, named in sorted(_happenings(subject, index, scene, runs), key=_cycle):
         if seen is not None:
             change = _change(subject, position, seen)
             if change is None:
                 yield f"{_text(seen)} at cycle {cycle} is no pattern next to the one before"
                 return
             position += change
+        elif named is not None:
+            offset = named - position
         elif read is None:
-            position = 0
-        elif read != position:
+            position = offset = 0
+        elif read != wrapped_int32(position + offset):
             yield f"position {read} at cycle {cycle}, but the wires made {position} steps"
             return
 
@@ -53,9 +57,10 @@ def _can_be_counted(subject: Subject) -> bool:
     )
 
 
-_Happening = tuple[int, Levels | None, int | None]
+_Happening = tuple[int, Levels | None, int | None, int | None]
 """
-A cycle, and what the wires show from then on, or the position that is read; neither for Init.
+A cycle, and what the wires show from then on, or the position that is read, or what an axis is told
+of it; none of them for Init.
 """
 
 
@@ -70,16 +75,19 @@ def _happenings(
             ports[upcoming.port] = upcoming.value
             upcoming = next(states, None)
         if run.writes:
-            yield run.writes[-1].cycle, subject.pattern(ports), None
+            yield run.writes[-1].cycle, subject.pattern(ports), None, None
     for answer in scene.answers:
         if answer.call.motor != index:
             continue
         first = scene.trace.commit(answer.begin_cycle, answer.end_cycle)
-        second = scene.trace.commit(answer.begin_cycle, answer.end_cycle, 1)
-        if answer.call.kind is CallKind.READ and second:
-            yield second[0], None, answer.position
+        place = masked_reads(subject.facts).index(PositionRead)
+        read = scene.trace.commit(answer.begin_cycle, answer.end_cycle, place)
+        if answer.call.kind is CallKind.READ and read:
+            yield read[0], None, answer.position, None
         elif answer.call.kind is CallKind.INIT and first:
-            yield first[0], None, None
+            yield first[0], None, None, None
+        elif answer.call.kind is CallKind.SET_POSITION and first and not answer.result:
+            yield first[0], None, None, answer.call.steps
 
 
 def _change(subject: Subject, position: int, seen: Levels) -> int | None:

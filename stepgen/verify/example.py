@@ -70,7 +70,10 @@ def _calls(trace: Trace, subject: Subject, index: int, plan: Plan) -> list[Answe
     for start in subject.clock_starts(trace):
         section = trace.masked_section(start.cycle)
         if section:  # the Arduino core's own init() starts every timer with interrupts on
-            control = BACK if len(answers) % 2 else DRIVE
+            goes_back = bool(len(answers) % 2)
+            control = BACK if goes_back else DRIVE
             call = Call(CallKind.SET_SPEED, index, control, top, steps)
+            if subject.is_axis:
+                call = Call(CallKind.MOVE_TO, index, steps=0 if goes_back else steps)
             answers.append(Answer(call, *section, result=0, status=0, position=0))
     return answers

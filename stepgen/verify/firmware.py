@@ -10,6 +10,7 @@ from stepgen.library.render import environment, render_library, spec_hash
 from stepgen.library.text import hexadecimal
 from stepgen.library.view import make_view
 from stepgen.plan.model import Plan
+from stepgen.verify.bench import is_axis
 from stepgen.verify.cache import build_once, content_key
 from stepgen.verify.toolchain import Build, Compiler, Target, build, empty_sketch
 
@@ -40,6 +41,9 @@ class BenchView:
     free_pins: tuple[int, ...]
     changing: tuple[str, ...]
     arguments: dict[str, str]
+    inits: tuple[str, ...]
+    axes: bool
+    limits: bool
 
 
 @dataclass(frozen=True)
@@ -136,10 +140,14 @@ def _bench_view(plan: Plan) -> BenchView:
     arguments = {
         motor.name: _ARGUMENTS + (_MORE_ARGUMENTS if motor.name in changing else "")
         for motor in plan.motors
+        if not is_axis(motor)
     }
     return BenchView(
         changing=changing,
         arguments=arguments,
+        inits=tuple(m.name + ("Init" if is_axis(m) else "ShieldInit") for m in plan.motors),
+        axes=len(arguments) < len(plan.motors),
+        limits=bool(arguments),
         free_bits=tuple(bits),
         free_groups=tuple(_free(mcu.port(letter), mask) for letter, mask in masks.items() if mask),
         free_pins=tuple(pins),

@@ -9,17 +9,26 @@ from enum import IntEnum
 from stepgen.devices import Board
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.stimuli import (
+    AxisStimulus,
     CallBack,
     Callbacks,
     ChannelSet,
     ClockOn,
+    Halt,
     Hold,
     Init,
     KeepAlive,
     MillisTick,
+    Move,
+    MoveTo,
+    QueueMoveTo,
     Release,
+    RunOn,
+    SetPace,
+    SetPosition,
     SetSpeed,
     Stimulus,
+    Stop,
     UpdateCheck,
 )
 from stepgen.verify.bench import Answer, CallKind
@@ -43,7 +52,7 @@ class Told:
     The model is told of *stimulus*; *answer* is the call that it was, if it was one.
     """
 
-    stimulus: Stimulus
+    stimulus: Stimulus | AxisStimulus
     answer: Answer | None = None
 
 
@@ -83,7 +92,36 @@ class TimeoutRead:
     answer: Answer
 
 
-Read = StatusRead | PositionRead | MissedRead | TimeoutRead
+@dataclass(frozen=True)
+class TargetRead:
+    """
+    The same call reads where an axis goes.
+    """
+
+    answer: Answer
+
+
+@dataclass(frozen=True)
+class DistanceRead:
+    """
+    The same call reads how far it is to there.
+    """
+
+    answer: Answer
+
+
+@dataclass(frozen=True)
+class RunningRead:
+    """
+    The same call reads whether the axis is under way.
+    """
+
+    answer: Answer
+
+
+Read = (
+    StatusRead | PositionRead | MissedRead | TimeoutRead | TargetRead | DistanceRead | RunningRead
+)
 Happening = Told | Read
 Row = tuple[int, Order, Happening]
 
@@ -116,16 +154,18 @@ def masked_sections(kind: CallKind, facts: MotorFacts) -> int:
     Return how many times a call of *kind* has interrupts off, one after the other.
     """
     if kind is CallKind.READ:
-        return len(_reads(facts))
+        return len(masked_reads(facts))
     # An event, then what is called back; one callback, then the other.
     return 2 if kind in (CallKind.UPDATE_CHECK, CallKind.CALLBACKS) else 1
 
 
-def _reads(facts: MotorFacts) -> tuple[type[Read], ...]:
+def masked_reads(facts: MotorFacts) -> tuple[type[Read], ...]:
     """
     Return what a call reads, in its order, each with interrupts off for a moment.
     """
     missed = (MissedRead,) if facts.tells_missed else ()
+    if facts.ladder is not None:
+        return (PositionRead, TargetRead, DistanceRead, RunningRead, *missed)
     timed = (TimeoutRead,) if facts.command_timeout_millis is not None else ()
     return (StatusRead, PositionRead, *missed, *timed)
 
@@ -137,8 +177,10 @@ def _rows_of_call(answer: Answer, trace: Trace, facts: MotorFacts) -> Iterator[R
     kind, begin, end = answer.call.kind, answer.begin_cycle, answer.end_cycle
     found = (trace.commit(begin, end, which) for which in range(masked_sections(kind, facts)))
     cycles = [section[0] for section in found if section]
+    if kind is CallKind.SET_PACE and not cycles and answer.result:
+        cycles = [end]  # it was refused for what it asks, and needed nothing else to know
     if kind is CallKind.READ:
-        rows = zip(cycles, _reads(facts), strict=False)
+        rows = zip(cycles, masked_reads(facts), strict=False)
         yield from ((cycle, Order.CALL, read(answer)) for cycle, read in rows)
     elif cycles and (stimulus := _stimulus(answer, cycles[0])):
         yield cycles[0], Order.CALL, Told(stimulus, answer)
@@ -146,13 +188,13 @@ def _rows_of_call(answer: Answer, trace: Trace, facts: MotorFacts) -> Iterator[R
             yield cycles[-1], Order.CALL, Told(CallBack(cycles[-1]))
 
 
-def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:
+def _stimulus(answer: Answer, cycle: int) -> Stimulus | AxisStimulus | None:
     """
     Return what the model is told of the call of *answer*; nothing of one that is of no motor.
     """
     call = answer.call
     update = (call.modification, call.interval, call.count)
-    stimuli: dict[CallKind, Stimulus] = {
+    stimuli: dict[CallKind, Stimulus | AxisStimulus] = {
         CallKind.SET_SPEED: SetSpeed(cycle, call.control, call.top, call.limit, *update),
         CallKind.HOLD: Hold(cycle),
         CallKind.RELEASE: Release(cycle),
@@ -160,5 +202,14 @@ def _stimulus(answer: Answer, cycle: int) -> Stimulus | None:
         CallKind.UPDATE_CHECK: UpdateCheck(cycle),
         CallKind.KEEP_ALIVE: KeepAlive(cycle),
         CallKind.CALLBACKS: Callbacks(cycle, bool(call.control & 1), bool(call.control & 2)),
+        CallKind.MOVE_TO: MoveTo(cycle, call.steps),
+        CallKind.MOVE: Move(cycle, call.steps),
+        CallKind.RUN_FORWARD: RunOn(cycle, 1),
+        CallKind.RUN_BACKWARD: RunOn(cycle, -1),
+        CallKind.STOP: Stop(cycle),
+        CallKind.HALT: Halt(cycle),
+        CallKind.SET_PACE: SetPace(cycle, call.top),
+        CallKind.QUEUE_MOVE_TO: QueueMoveTo(cycle, call.steps),
+        CallKind.SET_POSITION: SetPosition(cycle, call.steps),
     }
     return stimuli.get(call.kind)

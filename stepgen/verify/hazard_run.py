@@ -13,12 +13,12 @@ from stepgen.plan.model import Plan
 from stepgen.spec import LoadedSpec
 from stepgen.verify.bench import APPROACH_CYCLES, Answer, Bench, Call, CallKind, Loop
 from stepgen.verify.events import Events, Kind
-from stepgen.verify.hazards import Trial, Way
 from stepgen.verify.runner import Outcome, judge
 from stepgen.verify.scenarios import Action, Scenario, Wait
 from stepgen.verify.simulators import SIMAVR, Simulator
 from stepgen.verify.subject import Subject, subjects
 from stepgen.verify.trace import Run
+from stepgen.verify.trials import Trial, Way
 
 _RECENT_EVENTS = 200
 _TICK_CYCLES = 64 * 256  # timer 0 of the Arduino core
@@ -89,7 +89,7 @@ class HazardRun:
         self._wait(trial.settle_cycles + max(0, deadline - self.bench.due_cycle))
         self._do(Call(CallKind.READ, self.index))
         self._wait(APPROACH_CYCLES)
-        self._do(Call(CallKind.SET_SPEED, self.index))
+        self._do(Call(CallKind.INIT if self.subject.is_axis else CallKind.SET_SPEED, self.index))
         self._wait(APPROACH_CYCLES)
         self._do(Call(CallKind.READ, self.index))
         self._wait(APPROACH_CYCLES)
@@ -102,11 +102,11 @@ class HazardRun:
             self._wait(_TICK_CYCLES + APPROACH_CYCLES)  # so that there was one
             self._wait_until(self._next_tick() + way.after_tick_cycles)
         self._do(way.start)
-        period = self.subject.facts.setting(way.start.top).period_cycles
-        self._wait(period + period // 2 + APPROACH_CYCLES)
-        deadline = self._last_step() + (way.meets - 1) * period
+        period = self.subject.facts.setting(way.start.top).period_cycles if way.start.top else 0
+        self._wait(way.first_cycles + way.second_cycles // 2 + APPROACH_CYCLES)
+        deadline = self._last_step() + way.from_first(period)
         if way.again:
-            self._wait_until(deadline - period // 2)
+            self._wait_until(deadline - way.period_cycles // 2)
             self._do(way.again)
         return deadline
 

@@ -4,20 +4,26 @@ The oracle: the reference model, fed with what happened on the chip.
 
 import re
 from bisect import bisect_left
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from stepgen.plan.model import Plan
 from stepgen.reference.axis import Turn
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sharing import Need
-from stepgen.reference.stimuli import Edge, MillisTick, Stimulus
+from stepgen.reference.stimuli import AxisStimulus, Edge, MillisTick, Stimulus
 from stepgen.reference.timer import COMPARE_PRESCALER, TimerSetting
+from stepgen.reference.trapezoid import Start, TrapezoidModel
 from stepgen.verify.bench import Answer
 from stepgen.verify.happenings import (
+    DistanceRead,
     MissedRead,
     PositionRead,
+    Read,
+    RunningRead,
     StatusRead,
+    TargetRead,
     TimeoutRead,
     Told,
     happenings,
@@ -94,7 +100,10 @@ class Oracle:
         self._raised = [run.raised for run in runs]
         self._runs = runs
         self._sets = _first_sets(subject, scene.trace, runs)
-        self._model = MotorModel(subject.facts, self._service_cycle, set_cycle=self._set_cycle)
+        model = TrapezoidModel if subject.is_axis else MotorModel
+        self._model = model(subject.facts, self._service_cycle, set_cycle=self._set_cycle)
+        # Each model understands what happens to its kind of motor.
+        self._apply: Callable[[Any], int] = self._model.apply
         self._edges: list[Edge] = []
         self._millis = 0
         self._own: set[int] = set()
@@ -112,14 +121,8 @@ class Oracle:
             match happening:
                 case Told(stimulus, answer):
                     self._tell(stimulus, answer, result)
-                case StatusRead(answer):
-                    self._compare_status(cycle, answer, result)
-                case PositionRead(answer):
-                    self._compare_position(cycle, answer, result)
-                case MissedRead(answer):
-                    self._compare_missed(cycle, answer, result)
-                case TimeoutRead(answer):
-                    self._compare_timed_out(cycle, answer, result)
+                case _:
+                    self._compare_read(cycle, happening, result)
         self._advance(self._scene.until_cycle)
         return self._edges
 
@@ -129,6 +132,13 @@ class Oracle:
         Return the interval after each step, by the step's deadline, as far as the model has come.
         """
         return self._model.intervals
+
+    @property
+    def starts(self) -> tuple[Start, ...]:
+        """
+        Return the calls that began a leg of an axis from rest, as far as the model has come.
+        """
+        return self._model.starts if isinstance(self._model, TrapezoidModel) else ()
 
     @property
     def needs(self) -> tuple[Need, ...]:
@@ -219,37 +229,43 @@ class Oracle:
     def _advance(self, cycle: int) -> None:
         self._edges.extend(self._model.advance(cycle))
 
-    def _tell(self, stimulus: Stimulus, answer: Answer | None, result: Comparison) -> None:
+    def _tell(
+        self, stimulus: Stimulus | AxisStimulus, answer: Answer | None, result: Comparison
+    ) -> None:
         if isinstance(stimulus, MillisTick):
             self._millis = stimulus.millis
-        code = self._model.apply(stimulus)
+        code = self._apply(stimulus)
         if answer is not None and code != answer.result:
             result.report(f"{answer.call} returned {answer.result}, the model says {int(code)}")
 
-    def _compare_status(self, cycle: int, answer: Answer, result: Comparison) -> None:
-        status = int(self._model.status_at(cycle, self._millis))
-        if status != answer.status:
-            result.report(
-                f"status {answer.status:#04x} at cycle {cycle}, the model says {status:#04x}"
-            )
-
-    def _compare_position(self, cycle: int, answer: Answer, result: Comparison) -> None:
+    def _compare_read(self, cycle: int, read: Read, result: Comparison) -> None:
+        """
+        Compare what the sketch was told at *cycle* with what the model knows then.
+        """
         self._advance(cycle)
-        position = self._model.position
-        if answer.position != position:
-            result.report(f"position {answer.position} at cycle {cycle}, the model says {position}")
-
-    def _compare_missed(self, cycle: int, answer: Answer, result: Comparison) -> None:
-        self._advance(cycle)
-        overruns = self._model.overruns
-        if answer.missed != overruns:
-            result.report(f"{answer.missed} missed at cycle {cycle}, the model says {overruns}")
-
-    def _compare_timed_out(self, cycle: int, answer: Answer, result: Comparison) -> None:
-        self._advance(cycle)
-        known = int(self._model.timed_out)
-        if answer.timed_out != known:
-            result.report(f"timed out {answer.timed_out} at cycle {cycle}, the model says {known}")
+        answer, model = read.answer, self._model
+        match read, model:
+            case StatusRead(), MotorModel():
+                status = int(model.status_at(cycle, self._millis))
+                text, seen, known = "status {:#04x}", answer.status, status
+            case TimeoutRead(), MotorModel():
+                text, seen, known = "timed out {}", answer.timed_out, int(model.timed_out)
+            case PositionRead(), _:
+                text, seen, known = "position {}", answer.position, model.position
+            case MissedRead(), _:
+                text, seen, known = "{} missed", answer.missed, model.overruns
+            case TargetRead(), TrapezoidModel():
+                text, seen, known = "target {}", answer.target, model.target
+            case DistanceRead(), TrapezoidModel():
+                text, seen, known = "distance {}", answer.distance, model.distance
+            case RunningRead(), TrapezoidModel():
+                text, seen, known = "running {}", answer.running, int(model.running)
+            case _:
+                raise TypeError(f"no motor of this kind can be asked for {read}")
+        if seen != known:
+            told = text.format(seen)
+            number = "{:#04x}" if isinstance(read, StatusRead) else "{}"
+            result.report(f"{told} at cycle {cycle}, the model says {number.format(known)}")
 
 
 def _first_sets(subject: Subject, trace: Trace, runs: Sequence[Run]) -> dict[int, int]:

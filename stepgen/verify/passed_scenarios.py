@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from random import Random
 
 from stepgen.plan.model import Plan
-from stepgen.verify.bench import Call, CallKind, Loop
+from stepgen.verify.bench import Call, CallKind, Loop, is_axis
 from stepgen.verify.late_scenarios import hold_up
 from stepgen.verify.scenarios import BACK, DRIVE, MILLIS, Action, Scenario, Wait
 
@@ -22,10 +22,10 @@ _SEED = 20_261_101
 
 def passed_scenarios(plan: Plan) -> Iterator[Scenario]:
     """
-    Yield the scenarios for each motor of *plan* that has a channel of a 16-bit timer.
+    Yield the scenarios for each motor of *plan* with a channel of a 16-bit timer that is no axis.
     """
     for index, motor in enumerate(plan.motors):
-        if not motor.timing.channel:
+        if not motor.timing.channel or is_axis(motor):
             continue
         fastest = plan.minimum_period_cycles
         for name, loop, actions in (
@@ -84,7 +84,7 @@ def _starts(plan: Plan, motor: int, fastest: int) -> Iterator[Action]:
     """
     Start and stop at many points of the periods of the other motors, which use the same timer.
     """
-    others = [index for index in range(len(plan.motors)) if index != motor]
+    others = [i for i, one in enumerate(plan.motors) if i != motor and not is_axis(one)]
     for index in others:
         yield Call(CallKind.SET_SPEED, index, DRIVE, fastest + 3 * index)
     for index in range(_STARTS):

@@ -38,7 +38,9 @@ def broken_pulses(
     rises = [cycle for cycle, level in step if level]
     yield from _wrong_counts(runs, edges, rises)
     yield from wrong_widths(pulse, step)
-    yield from _wrong_turns(scene, [change for change in direction if change[0] > begin], turns)
+    seen = [change for change in direction if change[0] > begin]
+    by_interrupt = runs if subject.is_axis else ()
+    yield from _wrong_turns(scene, by_interrupt, seen, turns)
     yield from wrong_directions(pulse, direction, rises)
     for enable in enables:
         yield from wrong_enables(pulse, enable, rises)
@@ -87,10 +89,15 @@ def wrong_widths(pulse: PulseFacts, step: Sequence[Change]) -> Iterator[str]:
             yield f"STEP is LOW for {width} cycles at cycle {cycle}; the driver needs {pulse.low}"
 
 
-def _wrong_turns(scene: Scene, seen: Sequence[Change], turns: Sequence[Turn]) -> Iterator[str]:
+def _wrong_turns(
+    scene: Scene, runs: Sequence[Run], seen: Sequence[Change], turns: Sequence[Turn]
+) -> Iterator[str]:
     """
     Yield where DIR does not change in the call that turns the motor round, or does elsewhere.
+
+    An axis turns in one of its step interrupts, *runs*, too.
     """
+    interrupts = {run.raised: (run.entered, run.left) for run in runs}
     for wanted, change in zip_longest(turns, seen):
         cycle = change[0] if change else wanted.cycle
         if cycle > scene.until_cycle - _ENDING_CYCLES:
@@ -98,7 +105,7 @@ def _wrong_turns(scene: Scene, seen: Sequence[Change], turns: Sequence[Turn]) ->
         if change is None or wanted is None:
             yield f"DIR {'changes' if change else 'stays'} at cycle {cycle}, unlike the model"
             return
-        section = scene.trace.masked_section(wanted.cycle)
+        section = interrupts.get(wanted.cycle) or scene.trace.masked_section(wanted.cycle)
         is_there = section is not None and section[0] <= change[0] <= section[1]
         if not is_there or change[1] != (wanted.direction < 0):
             yield (

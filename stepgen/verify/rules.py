@@ -12,7 +12,8 @@ from itertools import pairwise
 from stepgen.plan.model import MotorPlan
 from stepgen.reference.contract import Control
 from stepgen.reference.stimuli import Edge, EdgeKind
-from stepgen.reference.timer import TimerSetting
+from stepgen.reference.timer import TimerSetting, first_match_cycles
+from stepgen.reference.trapezoid import Start
 from stepgen.verify.bench import OF_NO_MOTOR, Answer, CallKind
 from stepgen.verify.happenings import masked_sections
 from stepgen.verify.oracle import WAKE_CYCLES, Scene
@@ -54,6 +55,8 @@ def _unmasked_calls(subject: Subject, scene: Scene, answers: Sequence[Answer]) -
     Whatever is shared with the interrupt is read and written with interrupts off.
     """
     for answer in answers:
+        if answer.call.kind is CallKind.SET_PACE and answer.result:
+            continue  # refused for what it asks, it touches nothing
         sections = masked_sections(answer.call.kind, subject.facts)
         if scene.trace.commit(answer.begin_cycle, answer.end_cycle, sections - 1) is None:
             yield f"{answer.call} touches what the interrupt changes without masking it"
@@ -73,7 +76,9 @@ def _wrong_intervals(
     """
     by_deadline = {run.raised: run for run in runs}
     for first, second in pairwise(steps):
-        run, new = by_deadline.get(first.deadline_cycle), intervals[first.deadline_cycle]
+        run, new = by_deadline.get(first.deadline_cycle), intervals.get(first.deadline_cycle)
+        if new is None:  # an axis came to rest
+            continue
         error = second.deadline_cycle - first.deadline_cycle - new.period_cycles
         if run is None or not error or _is_started(starts, run.left, second.deadline_cycle):
             continue
@@ -130,6 +135,29 @@ def _wrong_starts(
             yield (
                 f"the first step is due {wait} cycles after the call at cycle {commit[0]}; "
                 f"an interval is {setting.period_cycles}"
+            )
+
+
+def wrong_leg_starts(subject: Subject, scene: Scene, legs: Sequence[Start]) -> Iterator[str]:
+    """
+    Yield where the first step of an axis is not one interval after the call, counted from within.
+    """
+    if not legs or subject.channel is None:
+        return
+    sets = scene.trace.channel_sets(subject.channel, scene.trace.clock_starts(subject.timer))
+    by_call = [one for one in sets if not one.in_interrupt]
+    for leg in legs:
+        section = scene.trace.masked_section(leg.cycle)
+        place = bisect_right(by_call, leg.cycle, key=lambda one: one.cycle)
+        if section is None or place == len(by_call) or by_call[place].cycle > section[1]:
+            yield f"the call at cycle {leg.cycle} sets no channel for the first step"
+            continue
+        interval, one = leg.interval_cycles, by_call[place]
+        wait = one.cycle + one.ahead_cycles + interval - first_match_cycles(interval) - leg.cycle
+        if not interval <= wait <= interval + section[1] - section[0]:
+            yield (
+                f"the first step is due {wait} cycles after the call at cycle {leg.cycle}; "
+                f"an interval is {interval}"
             )
 
 

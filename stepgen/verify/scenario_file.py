@@ -16,8 +16,10 @@ from ruamel.yaml.comments import CommentedMap
 from stepgen.errors import Fault, StepgenError
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.reference.contract import ALL_CONTROL_BITS, CONTROL_BITS, Control
+from stepgen.reference.timer import FRACTIONS
 from stepgen.spec.load import load_model
-from stepgen.verify.bench import SWITCHING, Call, CallKind, Context, Loop
+from stepgen.verify.bench import SWITCHING, Call, CallKind, Context, Loop, has_call, is_axis
+from stepgen.verify.ladders import ladder_of
 from stepgen.verify.scenario_model import (
     UPDATE_FIELDS,
     CallStep,
@@ -75,17 +77,38 @@ def scenario_text(scenario: Scenario, plan: Plan) -> str:
 
 def default_scenario(plan: Plan) -> Scenario:
     """
-    Return a first look: each motor makes eight steps forward and eight back, 200 a second.
+    Return a first look: each motor makes eight steps forward and eight back.
+
+    200 a second; an axis takes its time from rest to rest.
     """
-    top = plan.board.f_cpu_hz // 200
-    drive, back = int(Control.DRV_EN), int(Control.DRV_EN | Control.DIRECTION)
     actions: list[Action] = []
-    for motor in range(len(plan.motors)):
-        for control in (drive, back):
-            actions.append(Call(CallKind.SET_SPEED, motor, control, top, 8))
-            actions.append(Wait(11 * top))
-        actions.append(Call(CallKind.READ, motor))
+    for index, motor in enumerate(plan.motors):
+        top = max(plan.board.f_cpu_hz // 200, _first_interval_cycles(motor))
+        for call in _there_and_back(motor, index, top):
+            actions += [call, Wait(11 * top)]
+        actions.append(Call(CallKind.READ, index))
     return Scenario("eight steps there and back", Loop.SLEEP, tuple(actions))
+
+
+def _first_interval_cycles(motor: MotorPlan) -> int:
+    """
+    Return the longest interval of an axis that moves at full speed; 0 for another motor.
+    """
+    ladder = ladder_of(motor.motion)
+    return ladder.first_interval_256 // FRACTIONS if ladder else 0
+
+
+def _there_and_back(motor: MotorPlan, index: int, top: int) -> tuple[Call, Call]:
+    """
+    Return the calls that make eight steps forward and eight back.
+    """
+    if is_axis(motor):
+        return Call(CallKind.MOVE, index, steps=8), Call(CallKind.MOVE, index, steps=-8)
+    drive, back = int(Control.DRV_EN), int(Control.DRV_EN | Control.DIRECTION)
+    return (
+        Call(CallKind.SET_SPEED, index, drive, top, 8),
+        Call(CallKind.SET_SPEED, index, back, top, 8),
+    )
 
 
 def _faults(step: CallStep, plan: Plan) -> Iterator[tuple[tuple[str | int, ...], str]]:
@@ -112,8 +135,14 @@ def _lacks(
     step: CallStep, motor: MotorPlan, bits: Mapping[str, int]
 ) -> Iterator[tuple[tuple[str | int, ...], str]]:
     """
-    Yield what *motor* has not: a switch for its current, a time-out, or update events.
+    Yield what *motor* has not: the call, a switch for its current, a time-out, or update events.
     """
+    if step.kind not in SWITCHING and not has_call(motor, step.kind):
+        yield (
+            ("call",),
+            f"the motor {motor.name} has no such call; {_way_to_call(motor, step.kind)}",
+        )
+        return
     if step.kind in SWITCHING and not motor.switches_current:
         yield ("call",), f"the motor {motor.name} has no ENABLE to switch; leave this out"
     if step.kind is CallKind.KEEP_ALIVE and motor.command_timeout_ms is None:
@@ -121,6 +150,17 @@ def _lacks(
         yield ("call",), f"the motor {motor.name} has no command time-out; {way_out}"
     if _control_bits(motor) != ALL_CONTROL_BITS:
         yield from _lacks_events(step, motor, bits)
+
+
+def _way_to_call(motor: MotorPlan, kind: CallKind) -> str:
+    """
+    Return what to do about the call *kind*, which the API of *motor* has not.
+    """
+    if not is_axis(motor):
+        return "give it `motion: {kind: trapezoid, ...}`, or write set_speed"
+    if kind is CallKind.QUEUE_MOVE_TO:
+        return "give its motion a `queue`, or write move_to"
+    return "write move_to, run_forward, stop or another of those of an axis"
 
 
 def _lacks_events(
@@ -158,6 +198,7 @@ def _call(step: CallStep, plan: Plan) -> Call:
         step.modification,
         step.interval,
         step.count,
+        steps=step.steps,
         context=Context[step.context.upper()],
     )
 

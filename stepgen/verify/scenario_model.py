@@ -26,6 +26,11 @@ _FIELDS: Mapping[CallKind, tuple[str, ...]] = MappingProxyType(
         CallKind.DIVIDE_CLOCK: ("control",),
         CallKind.TOP_PER_SECOND: ("top",),
         CallKind.CLOCKS_PER_SECOND: (),
+        CallKind.SET_PACE: ("motor", "top", "context"),
+        **dict.fromkeys(
+            (CallKind.MOVE_TO, CallKind.MOVE, CallKind.QUEUE_MOVE_TO, CallKind.SET_POSITION),
+            ("motor", "steps", "context"),
+        ),
     }
 )
 _CALLBACKS = {"REACHED": 1, "FAULT": 2}
@@ -63,6 +68,8 @@ class CallStep(SpecModel):
     """
     ``{call: set_speed, motor: pan, control: [DRV_EN], top: 20000, limit: 10}``.
 
+    Of an axis ``{call: move_to, steps: -400}``, and in 1/256 clock ``{call: set_pace, top: 9999}``.
+
     A number for ``control`` is passed on as it is, also where the library must refuse it.
     """
 
@@ -79,6 +86,15 @@ class CallStep(SpecModel):
         "divide_clock",
         "top_per_second",
         "clocks_per_second",
+        "move_to",
+        "move",
+        "run_forward",
+        "run_backward",
+        "stop",
+        "halt",
+        "set_pace",
+        "queue_move_to",
+        "set_position",
     ]
     motor: str | None = None
     control: ControlField = ()
@@ -87,6 +103,7 @@ class CallStep(SpecModel):
     modification: Annotated[int, Field(ge=0, le=0xFFFF_FFFF)] = 0
     interval: Annotated[int, Field(ge=0, le=0xFFFF)] = 0
     count: Annotated[int, Field(ge=0, le=0xFFFF)] = 0
+    steps: Annotated[int, Field(ge=-0x8000_0000, le=0x7FFF_FFFF)] = 0
     context: Literal["loop", "callback", "interrupt"] = "loop"
 
     @property

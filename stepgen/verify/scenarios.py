@@ -2,12 +2,12 @@
 Scenarios: what a sketch asks of the library, and when. The standard ones, and the user's own.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from stepgen.plan.model import Plan
 from stepgen.reference.contract import Control
-from stepgen.verify.bench import SWITCHING, Call, CallKind, Loop
+from stepgen.verify.bench import Call, CallKind, Loop, has_call, is_axis
 
 DRIVE = int(Control.DRV_EN)
 BACK = int(Control.DRV_EN | Control.DIRECTION)
@@ -53,17 +53,13 @@ class Scenario:
         Yield its actions without the calls that the library of *plan* does not have.
         """
         for action in self.actions:
-            if (
-                isinstance(action, Wait)
-                or action.kind not in SWITCHING
-                or plan.motors[action.motor].switches_current
-            ):
+            if isinstance(action, Wait) or has_call(plan.motors[action.motor], action.kind):
                 yield action
 
 
 def standard_scenarios(plan: Plan) -> tuple[Scenario, ...]:
     """
-    Return the scenarios that every spec must pass, for each of its motors.
+    Return the scenarios that every spec must pass, for each of its motors but axes.
     """
     return tuple(
         Scenario(name, loop, tuple(actions))
@@ -72,7 +68,9 @@ def standard_scenarios(plan: Plan) -> tuple[Scenario, ...]:
 
 
 def _standard(plan: Plan, fastest: int) -> Iterator[tuple[str, Loop, list[Action]]]:
-    motors = range(len(plan.motors))
+    motors = [index for index, motor in enumerate(plan.motors) if not is_axis(motor)]
+    if not motors:
+        return
     slowest = plan.largest_period_cycles
     yield (
         f"{_LONG_MOVE_STEPS} steps at the fastest rate",
@@ -88,7 +86,7 @@ def _standard(plan: Plan, fastest: int) -> Iterator[tuple[str, Loop, list[Action
     yield (
         "the slowest rate",
         Loop.SLEEP,
-        [_speed(0, DRIVE, slowest, 2), Wait(4 * slowest), _read(0)],
+        [_speed(motors[0], DRIVE, slowest, 2), Wait(4 * slowest), _read(motors[0])],
     )
     yield "single steps both ways", Loop.BUSY, list(_single_steps(motors, fastest))
     yield "restart while running", Loop.BUSY, list(_restarts(motors, fastest))
@@ -122,18 +120,18 @@ def _read(motor: int) -> Call:
     return Call(CallKind.READ, motor)
 
 
-def _each(motors: range, control: int, top: int, limit: int = 0) -> Iterator[Call]:
+def _each(motors: Sequence[int], control: int, top: int, limit: int = 0) -> Iterator[Call]:
     return (_speed(motor, control, top, limit) for motor in motors)
 
 
-def _long_moves(motors: range, fastest: int) -> Iterator[Action]:
+def _long_moves(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     for motor in motors:
         yield _speed(motor, DRIVE, fastest, _LONG_MOVE_STEPS)
         yield Wait((_LONG_MOVE_STEPS + 2) * fastest)
         yield _read(motor)
 
 
-def _single_steps(motors: range, fastest: int) -> Iterator[Action]:
+def _single_steps(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     for motor in motors:
         for control in (DRIVE, DRIVE, BACK, BACK, BACK, DRIVE):
             yield _speed(motor, control, fastest, 1)
@@ -141,7 +139,7 @@ def _single_steps(motors: range, fastest: int) -> Iterator[Action]:
         yield _read(motor)
 
 
-def _restarts(motors: range, fastest: int) -> Iterator[Action]:
+def _restarts(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     """
     Change speed, direction and limit in mid-run: same prescaler, and across prescalers.
     """
@@ -165,7 +163,7 @@ def _restarts(motors: range, fastest: int) -> Iterator[Action]:
             yield _read(motor)
 
 
-def _stops(motors: range, fastest: int) -> Iterator[Action]:
+def _stops(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     for motor in motors:
         for stop in (_speed(motor, 0, 0), _speed(motor, DRIVE, 0), _speed(motor, 0, 5_000)):
             yield _speed(motor, BACK, fastest)
@@ -175,7 +173,7 @@ def _stops(motors: range, fastest: int) -> Iterator[Action]:
             yield _read(motor)
 
 
-def _stops_everywhere(motors: range, fastest: int) -> Iterator[Action]:
+def _stops_everywhere(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     """
     Stop and start again, each time a cycle later in the period, past its end.
 
@@ -190,7 +188,7 @@ def _stops_everywhere(motors: range, fastest: int) -> Iterator[Action]:
         yield _read(motor)
 
 
-def _changes_everywhere(motors: range, fastest: int) -> Iterator[Action]:
+def _changes_everywhere(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     """
     Change speed in mid-run, each time a little later in the period, past its end.
     """
@@ -206,7 +204,7 @@ def _changes_everywhere(motors: range, fastest: int) -> Iterator[Action]:
         yield _speed(motor, 0, 0)
 
 
-def _millis_ends(motors: range, fastest: int) -> Iterator[Action]:
+def _millis_ends(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     for motor in motors:
         for control, top, milliseconds in (
             (MILLIS, fastest, 1),
@@ -231,7 +229,7 @@ def _millis_ends(motors: range, fastest: int) -> Iterator[Action]:
         yield _speed(motor, 0, 0)
 
 
-def _short_millis_ends(motors: range, fastest: int, millisecond: int) -> Iterator[Action]:
+def _short_millis_ends(motors: Sequence[int], fastest: int, millisecond: int) -> Iterator[Action]:
     """
     End after each number of milliseconds up to where the clock has passed over one: it jumps.
 
@@ -244,7 +242,7 @@ def _short_millis_ends(motors: range, fastest: int, millisecond: int) -> Iterato
             yield _read(motor)
 
 
-def _slow_millis_ends(motors: range, second: int) -> Iterator[Action]:
+def _slow_millis_ends(motors: Sequence[int], second: int) -> Iterator[Action]:
     """
     End far beyond 32 768 ms, and between two slow steps.
     """
@@ -259,7 +257,7 @@ def _slow_millis_ends(motors: range, second: int) -> Iterator[Action]:
         yield _read(motor)
 
 
-def _refusals(motors: range, fastest: int, slowest: int) -> Iterator[Action]:
+def _refusals(motors: Sequence[int], fastest: int, slowest: int) -> Iterator[Action]:
     for motor in motors:
         yield _speed(motor, DRIVE, fastest, 500)
         for call in (
@@ -280,7 +278,7 @@ def _refusals(motors: range, fastest: int, slowest: int) -> Iterator[Action]:
         yield _read(motor)
 
 
-def _hold_and_release(motors: range, fastest: int) -> Iterator[Action]:
+def _hold_and_release(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     for motor in motors:
         for kind in (CallKind.HOLD, CallKind.RELEASE, CallKind.HOLD):
             yield Call(kind, motor)
@@ -300,7 +298,7 @@ def _hold_and_release(motors: range, fastest: int) -> Iterator[Action]:
         yield _read(motor)
 
 
-def _together(motors: range, fastest: int) -> Iterator[Action]:
+def _together(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     yield from _each(motors, DRIVE, fastest)
     yield Wait(1_000_000)
     for motor in motors:
@@ -310,7 +308,7 @@ def _together(motors: range, fastest: int) -> Iterator[Action]:
     yield from (_read(motor) for motor in motors)
 
 
-def _hostile(motors: range, fastest: int) -> Iterator[Action]:
+def _hostile(motors: Sequence[int], fastest: int) -> Iterator[Action]:
     for control, top, limit in (
         (DRIVE, fastest, 3_000),
         (BACK, 3_333, 400),

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import permutations
 
 from stepgen.plan.model import Plan
-from stepgen.verify.bench import Call, CallKind, Loop
+from stepgen.verify.bench import Call, CallKind, Loop, is_axis
 from stepgen.verify.scenarios import BACK, DRIVE, MILLIS, Action, Scenario, Wait
 
 _SWEEP_STEP_CYCLES = 7  # shorter than any stretch of a few instructions with interrupts off
@@ -16,8 +16,14 @@ _CALL_CYCLES = 700  # from the wish for a call to its end
 def sharing_scenarios(plan: Plan) -> Iterator[Scenario]:
     """
     Yield the scenarios for each two motors of *plan* that share their enables, either way round.
+
+    Those of axes are in `stepgen.verify.axis_scenarios`.
     """
-    sharers = [i for i, motor in enumerate(plan.motors) if motor.drive.shared_enables]
+    sharers = [
+        index
+        for index, motor in enumerate(plan.motors)
+        if motor.drive.shared_enables and not is_axis(motor)
+    ]
     for one, other in permutations(sharers, 2):
         yield from _of_two(one, other, plan)
 

@@ -28,6 +28,13 @@ def wrong_levels(
     yield from _wrong_in_calls(subject, index, scene, runs)
 
 
+def with_dir_of(edge: Edge, seen: Levels) -> Levels:
+    """
+    Return what the wires of a driver show, *seen*, with DIR as *edge* has it.
+    """
+    return (*seen[:_DIR], edge.pattern.driven[_DIR], *seen[_DIR + 1 :])
+
+
 def _wrong_at_rest(
     subject: Subject, scene: Scene, runs: Sequence[Run], edges: Sequence[Edge]
 ) -> Iterator[str]:
@@ -42,9 +49,9 @@ def _wrong_at_rest(
         if place < 0 or done[place] > cycle:
             continue
         edge = edges[place]
-        seen = list(subject.pattern(scene.trace.ports_at(cycle)))
+        seen: Levels = subject.pattern(scene.trace.ports_at(cycle))
         if subject.facts.has_direction:
-            seen[_DIR] = edge.pattern.driven[_DIR]
+            seen = with_dir_of(edge, seen)
         if not edge.pattern.allows(seen):
             yield (
                 f"{_text(seen)} at cycle {cycle}, the model says {edge.pattern} since "

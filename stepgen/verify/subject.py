@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from stepgen.devices import PortBit, Register, Timer
-from stepgen.plan.model import Plan
+from stepgen.plan.model import MotorPlan, Plan
 from stepgen.reference.contract import MotionKind, TimingKind
 from stepgen.reference.facts import MotorFacts
 from stepgen.spec import LoadedSpec, Motor
 from stepgen.verify.bench import compare_channel
 from stepgen.verify.drives import DriveFacts, drive_facts
 from stepgen.verify.elf import read_firmware
+from stepgen.verify.ladders import ladder_of
 from stepgen.verify.trace import ClockStart, PortState, Run, Trace
 
 _VECTOR_BYTES = 4
@@ -59,6 +60,13 @@ class Subject:
             for one in trace.channel_sets(self.channel, starts)
             if not one.in_interrupt
         ]
+
+    @property
+    def is_axis(self) -> bool:
+        """
+        Tell whether it is moved by the calls of an axis.
+        """
+        return self.facts.ladder is not None
 
     @property
     def masks(self) -> dict[str, int]:
@@ -112,6 +120,7 @@ def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:
         pulse = drive.pulse and drive.pulse.with_timing(timing)
         drive = replace(drive, pulse=pulse)
         facts = _facts(motors[name], drive, plan, timing, shares_enables=bool(shared))
+        facts = _with_ladder(facts, planned)
         vector = plan.board.mcu.vector(planned.timing.vector).number
         overrun = planned.hot_path.overrun_cycles
         saved = _jump_saved_cycles(image, vector)
@@ -150,6 +159,19 @@ def _timing(motor: Motor, channel: Register | None) -> TimingKind:
     spec: Any = motor.timing
     kind: TimingKind = spec.kind
     return "wide-compare" if channel else kind
+
+
+def _with_ladder(facts: MotorFacts, planned: MotorPlan) -> MotorFacts:
+    """
+    Return *facts* with what makes *planned* an axis, if it is one: the ladder is the planner's.
+    """
+    motion = planned.motion
+    return replace(
+        facts,
+        ladder=ladder_of(motion),
+        cruise_256=motion.cruise_interval_256,
+        queue=motion.queue,
+    )
 
 
 def _facts(

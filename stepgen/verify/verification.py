@@ -8,12 +8,14 @@ from pathlib import Path
 from stepgen.plan.model import Plan
 from stepgen.plan.planner import make_plan
 from stepgen.spec import LoadedSpec
+from stepgen.verify.axis_scenarios import axis_scenarios
 from stepgen.verify.bounds.judge import judge_worst_case
 from stepgen.verify.conformance.needs import refuse
 from stepgen.verify.example import run_example
 from stepgen.verify.firmware import build_firmware
 from stepgen.verify.late_scenarios import late_scenarios
 from stepgen.verify.passed_scenarios import passed_scenarios
+from stepgen.verify.ramps import judge_ramps
 from stepgen.verify.report import MotorFigures, SpecReport
 from stepgen.verify.runner import Outcome, is_asleep, run_scenario
 from stepgen.verify.scenarios import Scenario, standard_scenarios
@@ -79,6 +81,7 @@ def verify_spec(
     if _EXAMPLE not in report.left_out:
         findings = run_example(loaded, plan, firmware.example)
         report.check(_EXAMPLE, findings, "every step as the model says")
+    judge_ramps(loaded, plan, report)
     judge_worst_case(loaded, plan, firmware, compiler, report)
     return report
 
@@ -87,7 +90,13 @@ def _scenarios(plan: Plan) -> list[tuple[Scenario, bool]]:
     """
     Return the scenarios of *plan*, and of each whether it makes steps so late that they count.
     """
-    kinds = (standard_scenarios, update_scenarios, timeout_scenarios, sharing_scenarios)
+    kinds = (
+        standard_scenarios,
+        update_scenarios,
+        timeout_scenarios,
+        sharing_scenarios,
+        axis_scenarios,
+    )
     usual = [(scenario, False) for kind in kinds for scenario in kind(plan)]
     late = (late_scenarios, passed_scenarios)
     return [*usual, *((scenario, True) for kind in late for scenario in kind(plan))]

@@ -8,8 +8,9 @@ from random import Random
 import pytest
 
 from stepgen.verify.hazard_run import Met, run_hazards
-from stepgen.verify.hazards import AFTER_CYCLES, Trial, commands, ways
+from stepgen.verify.hazards import commands, ways
 from stepgen.verify.scenarios import Scenario
+from stepgen.verify.trials import AFTER_CYCLES, Trial
 from tests.sim.shrinking import Library
 
 _BATCH = 200

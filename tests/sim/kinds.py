@@ -26,4 +26,5 @@ KINDS = (
     "uno_compare_two",
     "uno_compare_28byj48",
     "mega_compare_three",
+    "uno_trapezoid",
 )

@@ -13,7 +13,8 @@ from functools import cache
 import pytest
 
 from stepgen import api
-from stepgen.verify.hazards import AFTER_CYCLES, Command, Trial, Way, commands, sweep, ways, window
+from stepgen.verify.hazards import commands, ways
+from stepgen.verify.trials import AFTER_CYCLES, Command, Trial, Way, sweep, window
 from tests.sim.hazard_trials import run, sample
 from tests.sim.kinds import KINDS
 from tests.sim.shrinking import ROOT, Library

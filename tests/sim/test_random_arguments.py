@@ -12,7 +12,9 @@ from random import Random
 import pytest
 
 from stepgen.plan.model import MotorPlan, Plan
-from stepgen.verify.bench import Bench, Call, CallKind, Context, Loop
+from stepgen.reference.axis import wrapped_int32
+from stepgen.verify.bench import Bench, Call, CallKind, Context, Loop, has_call, is_axis
+from stepgen.verify.scenario_model import fields_of
 from stepgen.verify.scenarios import Action, Scenario, Wait
 from tests.sim.kinds import KINDS
 from tests.sim.shrinking import Library
@@ -23,12 +25,27 @@ CAMPAIGN_SEEDS = 30
 # A call within an interrupt keeps the step interrupt waiting for as long as it takes: no call is
 # longer than this. A motor whose period is not longer may lose a step by that, as the header says.
 CALL_WITHIN_CYCLES = 3_000
-LARGEST_32, LARGEST_16 = 0xFFFF_FFFF, 0xFFFF
+LARGEST_32, LARGEST_16, LARGEST_INT32 = 0xFFFF_FFFF, 0xFFFF, 0x7FFF_FFFF
 KINDS_OF_CALL = {
     CallKind.SET_SPEED: 50,
     CallKind.HOLD: 6,
     CallKind.RELEASE: 6,
     CallKind.READ: 10,
+    CallKind.INIT: 3,
+}
+KINDS_OF_AXIS_CALL = {
+    CallKind.MOVE_TO: 12,
+    CallKind.MOVE: 12,
+    CallKind.QUEUE_MOVE_TO: 12,
+    CallKind.SET_POSITION: 12,
+    CallKind.SET_PACE: 12,
+    CallKind.RUN_FORWARD: 5,
+    CallKind.RUN_BACKWARD: 5,
+    CallKind.STOP: 5,
+    CallKind.HALT: 12,
+    CallKind.HOLD: 4,
+    CallKind.RELEASE: 4,
+    CallKind.READ: 5,
     CallKind.INIT: 3,
 }
 OF_UPDATES = {CallKind.UPDATE_CHECK: 12, CallKind.CALLBACKS: 8}
@@ -51,11 +68,14 @@ class Arguments:
         actions: list[Action] = []
         for _ in range(CALLS):
             index = self._random.randrange(len(self._plan.motors))
-            actions.append(self._call(index, self._plan.motors[index]))
+            motor = self._plan.motors[index]
+            of_kind = self._axis_call if is_axis(motor) else self._call
+            actions.append(of_kind(index, motor))
             actions.append(Wait(int(2 ** self._random.uniform(4, 17))))
             actions.append(Call(CallKind.READ, index))
-        for index in range(len(self._plan.motors)):  # whatever was said, a motor can be stopped
-            actions.append(Call(CallKind.SET_SPEED, index))
+        # Whatever was said, a motor can be stopped.
+        for index, motor in enumerate(self._plan.motors):
+            actions.append(Call(CallKind.HALT if is_axis(motor) else CallKind.SET_SPEED, index))
             actions.append(Wait(100_000))
             actions.append(Call(CallKind.READ, index))
         loop = self._random.choice([Loop.BUSY, Loop.HOSTILE])
@@ -77,6 +97,26 @@ class Arguments:
         control = draw.choice([draw.randrange(256), 0x80 | draw.randrange(128), 0x80, 0xFF, 0])
         update = (self._long(), self._word(), self._word()) if changes else (0, 0, 0)
         return Call(kind, index, control, self._top(), self._long(), *update, context=context)
+
+    def _axis_call(self, index: int, motor: MotorPlan) -> Call:
+        """
+        Return a call of an axis, with positions at the ends of their numbers and any interval.
+        """
+        draw = self._random
+        weights = {kind: n for kind, n in KINDS_OF_AXIS_CALL.items() if has_call(motor, kind)}
+        kind = draw.choices(list(weights), list(weights.values()))[0]
+        context = draw.choice(self._contexts(changes=False))
+        cruise = motor.motion.cruise_interval_256
+        paces = (0, cruise - 1, cruise, cruise + 1, LARGEST_32, self._long(), 3 * cruise)
+        near = draw.choice([-1, 1]) * int(2 ** draw.uniform(0, 6))
+        place = draw.choice([0, -1 << 31, LARGEST_INT32, wrapped_int32(self._long()), near, near])
+        return Call(
+            kind,
+            index,
+            top=draw.choice(paces) if kind is CallKind.SET_PACE else 0,
+            steps=place if "steps" in fields_of(kind) else 0,
+            context=context,
+        )
 
     def _contexts(self, *, changes: bool) -> list[Context]:
         within = [Context.CALLBACK] if changes else []

@@ -14,7 +14,7 @@ import pytest
 
 from stepgen.devices import PortBit
 from stepgen.library.render import template_dir
-from stepgen.verify.bench import Bench, Call, CallKind, Loop
+from stepgen.verify.bench import Bench, Call, CallKind, Loop, is_axis
 from stepgen.verify.events import Events, Kind
 from stepgen.verify.simavr import Machine
 from stepgen.verify.subject import Subject, subjects
@@ -36,7 +36,8 @@ def moving(library: Library, cycles: int) -> tuple[Bench, bytes]:
     bench.set_loop(Loop.BUSY)
     for index, motor in enumerate(library.plan.motors):
         top = 4 * library.plan.minimum_period_cycles + motor.wake_cycles
-        bench.call(Call(CallKind.SET_SPEED, index, _DRIVE, top))
+        start = Call(CallKind.SET_SPEED, index, _DRIVE, top)
+        bench.call(Call(CallKind.RUN_FORWARD, index) if is_axis(motor) else start)
     bench.wait(cycles)
     return bench, bench.machine.read_ram(mcu.ram_start, mcu.ram_bytes)
 

@@ -14,9 +14,10 @@ from stepgen.cli import app
 from stepgen.library.render import template_dir
 from stepgen.verify.bench import Call, CallKind, Loop
 from stepgen.verify.hazard_run import run_hazards
-from stepgen.verify.hazards import Trial, commands, ways
+from stepgen.verify.hazards import commands, ways
 from stepgen.verify.scenario_file import load_scenario
 from stepgen.verify.scenarios import Action, Scenario, Wait
+from stepgen.verify.trials import Trial
 from tests.sim.shrinking import Library, shrink
 
 SEED = 20_260_501

@@ -2,6 +2,7 @@
 Scenario files: whatever a scenario holds is written and read back, and faults have their place.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,8 +12,8 @@ from hypothesis import strategies as st
 from stepgen import api
 from stepgen.errors import StepgenError
 from stepgen.plan.model import Plan
-from stepgen.verify.bench import Call, CallKind, Loop
-from stepgen.verify.scenario_file import load_scenario, scenario_text
+from stepgen.verify.bench import OF_AXES, OF_EVERY_MOTOR, Call, CallKind, Context, Loop
+from stepgen.verify.scenario_file import default_scenario, load_scenario, scenario_text
 from stepgen.verify.scenarios import Action, Scenario, Wait
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -20,6 +21,7 @@ CONSTANT = api.plan(SPECS / "mega_pan_tilt.yaml")
 TIMED = api.plan(SPECS / "uno_command_timeout.yaml")
 CHANGING = api.plan(SPECS / "uno_variable_speed.yaml")
 ALWAYS_ENABLED = api.plan(SPECS / "uno_drv8825.yaml")
+AXIS = api.plan(SPECS / "uno_trapezoid.yaml")
 BYTES, WORDS, LONGS = (st.integers(0, (1 << bits) - 1) for bits in (8, 16, 32))
 LINES = st.text(st.characters(exclude_categories=("C", "Zl", "Zp")), min_size=1, max_size=40)
 
@@ -28,6 +30,8 @@ def actions(plan: Plan) -> st.SearchStrategy[Action]:
     """
     Return waits, and all calls with all arguments that the motors of *plan* have.
     """
+    if plan is AXIS:
+        return axis_actions()
     changes = plan.motors[0].motion.kind == "update-events"
     motors = st.integers(0, len(plan.motors) - 1)
     update = (LONGS, WORDS, WORDS) if changes else ()
@@ -50,6 +54,20 @@ def actions(plan: Plan) -> st.SearchStrategy[Action]:
     return st.one_of(every)
 
 
+def axis_actions() -> st.SearchStrategy[Action]:
+    """
+    Return waits, and all calls of an axis with a queue, with all steps and paces.
+    """
+    with_steps = [CallKind.MOVE_TO, CallKind.MOVE, CallKind.QUEUE_MOVE_TO, CallKind.SET_POSITION]
+    others = sorted({*OF_AXES, *OF_EVERY_MOTOR} - {*with_steps, CallKind.SET_PACE})
+    return st.one_of(
+        st.builds(Wait, st.integers(0, 1 << 40)),
+        st.builds(Call, st.sampled_from(with_steps), steps=st.integers(-(1 << 31), (1 << 31) - 1)),
+        st.builds(Call, st.just(CallKind.SET_PACE), top=LONGS),
+        st.builds(Call, st.sampled_from(others), context=st.sampled_from([0, 2]).map(Context)),
+    )
+
+
 def scenarios(plan: Plan) -> st.SearchStrategy[Scenario]:
     """
     Return scenarios for the motors of *plan*, with a name of one line.
@@ -58,7 +76,7 @@ def scenarios(plan: Plan) -> st.SearchStrategy[Scenario]:
     return st.builds(Scenario, LINES, st.sampled_from(Loop), steps)
 
 
-@given(data=st.data(), plan=st.sampled_from([CONSTANT, CHANGING, TIMED]))
+@given(data=st.data(), plan=st.sampled_from([CONSTANT, CHANGING, TIMED, AXIS]))
 def test_a_scenario_is_read_back_as_it_was_written(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject, plan: Plan
 ) -> None:
@@ -141,6 +159,58 @@ def test_a_byte_that_the_library_must_refuse_can_be_given_as_a_number(tmp_path: 
     scenario = load_scenario(file, CONSTANT)
 
     assert scenario.actions == (Call(CallKind.SET_SPEED, 0, 0xC2, 640), Wait(7))
+
+
+@pytest.mark.parametrize(
+    ("plan", "call", "way_out"),
+    [
+        (CONSTANT, "move_to", "give it `motion: {kind: trapezoid, ...}`, or write set_speed"),
+        (CONSTANT, "stop", "give it `motion: {kind: trapezoid, ...}`, or write set_speed"),
+        (AXIS, "set_speed", "write move_to, run_forward, stop or another of those of an axis"),
+        (AXIS, "update_check", "write move_to, run_forward, stop or another of those of an axis"),
+    ],
+)
+def test_calls_of_the_other_kind_of_motor_are_refused(
+    tmp_path: Path, plan: Plan, call: str, way_out: str
+) -> None:
+    """
+    An axis has its own calls, and they are no other motor's; the fault says which there are.
+    """
+    file = tmp_path / "other.yaml"
+    file.write_text(f"steps:\n  - {{call: {call}}}\n")
+
+    with pytest.raises(StepgenError) as refusal:
+        load_scenario(file, plan)
+
+    assert f"other.yaml:2:{len('  - {call: ') + 1}: error: " in str(refusal.value)
+    assert way_out in str(refusal.value)
+    assert len(refusal.value.faults) == 1
+
+
+def test_a_queue_that_an_axis_lacks_is_refused(tmp_path: Path) -> None:
+    """
+    Without a queue there is no such function.
+    """
+    motor = AXIS.motors[0]
+    plan = replace(AXIS, motors=(replace(motor, motion=replace(motor.motion, queue=0)),))
+    file = tmp_path / "queue.yaml"
+    file.write_text("steps:\n  - {call: queue_move_to, steps: 3}\n")
+
+    with pytest.raises(StepgenError, match="give its motion a `queue`, or write move_to"):
+        load_scenario(file, plan)
+
+
+def test_an_axis_goes_eight_steps_there_and_back_by_default() -> None:
+    """
+    A first look moves it by its own calls.
+    """
+    calls = [action for action in default_scenario(AXIS).actions if isinstance(action, Call)]
+
+    assert [(call.kind, call.steps) for call in calls] == [
+        (CallKind.MOVE, 8),
+        (CallKind.MOVE, -8),
+        (CallKind.READ, 0),
+    ]
 
 
 @pytest.mark.parametrize("call", ["hold", "release"])

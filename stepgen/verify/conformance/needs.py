@@ -35,6 +35,7 @@ OF_CHIP: Mapping[str, Sequence[str]] = {
     MEGA_1280_CHIP: ("instruction-cycles-1280", "response-1280", "four-timers-1280"),
     MEGA_CHIP: ("instruction-cycles-2560", "response-2560", "four-timers"),
 }
+_OF_CHANNELS = ("normal-compare", "two-channels", "flag-write")
 OF_TIMING: Mapping[str, Sequence[str]] = {
     "fast-pwm": (
         *("fast-pwm-period", "prescaler-phase", "start-order", "counts-exactly", "flag-write"),
@@ -47,7 +48,8 @@ OF_TIMING: Mapping[str, Sequence[str]] = {
         *("ctc-wrap", "count-kept"),
     ),
     "compare": ("timer2-compare", "timer2-moves", "flag-write"),
-    "wide-compare": ("normal-compare", "two-channels", "flag-write"),
+    "wide-compare": _OF_CHANNELS,
+    "ladder-compare": _OF_CHANNELS,
 }
 OF_KERNEL: Mapping[str, Sequence[str]] = {
     "toggle": ("pin-writes", "pin-writes-1280", "pin-writes-2560"),
