@@ -24,6 +24,7 @@ class AxisView:
     cruise_height: str
     cruise_text: str
     rows: tuple[str, ...]
+    row_count: str
     ramp_comment: tuple[str, ...]
     start_comment: tuple[str, ...]
     halt_comment: str
@@ -49,6 +50,7 @@ def axis_view(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> AxisView | 
         cruise_height=str(goal),
         cruise_text=f"{cruise_sps:.6g} steps/s",
         rows=tuple(_row(row) for row in ladder.rows),
+        row_count=str(len(ladder.rows)),
         ramp_comment=comment_lines(
             f"From {start} to {cruise_sps:.6g} steps/s at {float(ladder.acceleration):g} "
             f"steps/s^2: {goal} steps. Row by row from the lowest speed on: the levels, the "

@@ -106,13 +106,15 @@ def calls_comment(plan: Plan) -> tuple[str, ...]:
         if changing
         else ""
     )
+    axes = [f"{motor.name}SetSpeed()" for motor in plan.motors if motor.motion.ladder]
+    searches = f" ({listed(axes)}: longer, since it looks through the ramp)" if axes else ""
     dumps = [motor for motor in changing if motor.motion.dumps]
     names = listed([f"{dump_name(motor)}()" for motor in dumps]) if dumps else ""
     prints = f" The exception is {names}: it prints, and waits for Serial." if dumps else ""
     return comment_lines(
         "Every function may be called from setup() and loop(), from a callback, and from an "
         "interrupt of the sketch, also in the middle of another call. Step interrupts wait for an "
-        f"interrupt of the sketch: a call takes at most {CALL_CYCLES} clocks there{callbacks}, and "
+        f"interrupt of the sketch: a call takes at most {CALL_CYCLES} clocks there{callbacks}{searches}, and "
         f"counts as a stretch with interrupts off.{prints}"
     )
 

@@ -88,7 +88,8 @@ def _next_level(storage: Storage) -> tuple[Instruction, ...]:
     return (
         Instruction("lds   r24, %[levels]", 2, "more levels in this row?"),
         Instruction("subi  r24, 1", 1),
-        Instruction("brcs  16f", 1, "no: decide what comes next"),
+        Instruction("brcc  .+2", 2),
+        Instruction("rjmp  16f", 0, "no: decide what comes next"),
         Instruction("sts   %[levels], r24", 2),
         *(instruction for byte in added for instruction in byte),
         Instruction("lds   r24, %[length]", 2, "and lasts for so many steps"),
@@ -129,7 +130,7 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         *to_boundary((*usual_way, *late)),
     )
     first_lap, *more_laps = gate.boundary
-    decide = (2, 1, 2, 2)  # push r25, then LDS, SUBI, BRCS that branches
+    decide = (2, 2, 1, 1, 2)  # push r25, then LDS, SUBI, BRCC that does not branch, RJMP
     rare = (
         replace(first_lap, label="1"),
         *more_laps,

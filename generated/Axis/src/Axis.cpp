@@ -265,7 +265,7 @@ void __vector_slide_boundary_late() {
   if (slidePassed()) ++slideMotion.missed;
 }
 
-// Timer 1 compare match A: one step, 67 cycles from the interrupt's response to RETI; at most 737
+// Timer 1 compare match A: one step, 67 cycles from the interrupt's response to RETI; at most 1077
 // when it goes on in __vector_slide_boundary. STEP rises 17 cycles after the match (27 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port B and D and nothing else that the sketch can see. Behind each instruction stand its
@@ -326,7 +326,8 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   push  r25                      \n"  // 2
       "   lds   r24, %[levels]           \n"  // 2  more levels in this row?
       "   subi  r24, 1                   \n"  // 1
-      "   brcs  16f                      \n"  // 1  no: decide what comes next
+      "   brcc  .+2                      \n"  // 2
+      "   rjmp  16f                      \n"  //    no: decide what comes next
       "   sts   %[levels], r24           \n"  // 2
       "   lds   r24, %[interval]         \n"  // 2  the next level: the interval changes
       "   lds   r25, %[change]           \n"  // 2
@@ -376,7 +377,6 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "16: pop   r25                     \n"  // 2
       "   rjmp  .+0                      \n"  // 2
       "   rjmp  .+0                      \n"  // 2
-      "   nop                            \n"  // 1
       "   cbi   %[port0], 2              \n"  // 2  STEP falls
       "2: in    r24, %[scratch]          \n"  // 1
       "   out   %[sreg], r24             \n"  // 1
@@ -617,8 +617,10 @@ void slideInit() {
 // the next step. Tells whether the motor climbs. Only while interrupts are off, as what follows.
 SHARED bool slideCut() {
   auto &motion = near(slideMotion);
-  if (!(motion.mode & (kClimb | kDescend))) GPIOR1 = 1;
+  const uint8_t mode = motion.mode;
+  if (!(mode & (kClimb | kDescend))) GPIOR1 = 1;
   const bool climbs = slideSettle();
+  motion.mode |= mode & kDescend;
   motion.levels = motion.planned = 0;
   return climbs;
 }
@@ -714,13 +716,19 @@ void slideHalt() {
 static uint16_t slideHeightFor(uint32_t interval) {
   uint16_t height = 0;
   uint32_t pace = kSlideFirstInterval;
-  for (const PackedRow *packed = slideRamp; height < kSlideCruiseHeight; ++packed) {
+  for (const PackedRow *packed = slideRamp; packed < slideRamp + 59; ++packed) {
     const Row row = readRow(packed);
-    for (uint8_t level = 0; level < row.levels; ++level) {
-      pace -= row.slope;
-      if (pace < interval) return height;
-      height += row.steps;
+    const uint32_t top = pace - row.slope * row.levels;
+    if (top < interval) {  // in this row: bit by bit, how many of its levels
+      uint8_t levels = 0;
+      for (uint8_t more = 128; more; more >>= 1) {
+        const uint8_t tried = levels + more;
+        if (tried < row.levels && pace - row.slope * tried >= interval) levels = tried;
+      }
+      return height + levels * row.steps;
     }
+    height += row.levels * row.steps;
+    pace = top;
   }
   return height;
 }
