@@ -31,8 +31,9 @@ def datasheet(
     """
     Write a page with the wiring as a picture, what the library takes, rates, plots and cycles.
 
-    It needs nothing but a browser, in light or dark, and prints on two pages. With --verify it also
-    has flash, RAM, measured cycles, jitter and every check; exit code 1 if one of them fails.
+    It needs nothing but a browser, in light or dark, and prints on two pages, with more than three
+    motors on three. With --verify it also has flash, RAM, measured cycles, jitter and every check;
+    exit code 1 if one of them fails.
     """
     target = output or Path(f"{api.plan(spec).library.name}.html")
     report = None

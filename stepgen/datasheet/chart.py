@@ -2,7 +2,7 @@
 Speed against time: what a motor's motion does, drawn from the planner's own numbers.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import floor, log10
@@ -10,6 +10,7 @@ from math import floor, log10
 from stepgen.datasheet.scene import Scene, at
 from stepgen.errors import StepgenError
 from stepgen.library.examples_view import example_speed_sps
+from stepgen.library.text import listed
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.rates import Clock
 from stepgen.plan.speed_wishes import Wish, plan_wish
@@ -40,30 +41,50 @@ class Curve:
 class Chart:
     """
     A drawing with its curves, and what is to be known of it.
+
+    Args:
+        name: The first of its motors.
+        caption: All of them.
     """
 
+    name: str
+    caption: str
     scene: Scene
     curves: tuple[Curve, ...]
     note: str
 
 
-def motion_chart(motor: MotorPlan, plan: Plan) -> Chart:
+def motion_charts(plan: Plan) -> Iterator[Chart]:
     """
-    Return speed against time of *motor*: its ramps, or one turn to and fro where it has none.
+    Yield speed against time, one chart for the motors that do the same; its calls are the first's.
+
+    Charts with fewer calls come first: the columns of a printed page are shorter so.
     """
-    curves = _ramps(motor, plan) if motor.motion.changes_speed else ()
-    note = (
-        "From slow to the highest rate by update events: equal changes of the interval, or halved "
-        "ones. stepgen plan works out others."
-    )
-    if not curves:
-        curves = (_there_and_back(motor, example_speed_sps(plan)),)
-        note = (
-            "No ramp: the first step comes one interval after the call, at full rate, and the last "
-            "one ends the move; take rates at which motor and load can start and stop."
+    alike: dict[tuple[tuple[Corner, ...], ...], list[MotorPlan]] = {}
+    for motor in plan.motors:
+        corners = tuple(curve.corners for curve in _motion(motor, plan)[0])
+        alike.setdefault(corners, []).append(motor)
+    for motors in sorted(alike.values(), key=lambda motors: len(_motion(motors[0], plan)[0])):
+        curves, note = _motion(motors[0], plan)
+        names = listed([motor.name for motor in motors])
+        scene = _draw(f"Speed of {names} against time", curves)
+        yield Chart(motors[0].name, f"{names}: speed", scene, curves, note)
+
+
+def _motion(motor: MotorPlan, plan: Plan) -> tuple[tuple[Curve, ...], str]:
+    """
+    Return the ramps of *motor*, or one turn to and fro where it has none; and a note on them.
+    """
+    ramps = _ramps(motor, plan) if motor.motion.changes_speed else ()
+    if ramps:
+        return ramps, (
+            "From slow to the highest rate by update events: equal changes of the interval, or "
+            "halved ones. stepgen plan works out others."
         )
-    title = f"Speed of {motor.name} against time"
-    return Chart(_draw(title, curves), curves, note)
+    return (_there_and_back(motor, example_speed_sps(plan)),), (
+        "No ramp: the first step comes one interval after the call, at full rate, and the last "
+        "one ends the move; take rates at which motor and load can start and stop."
+    )
 
 
 def _ramps(motor: MotorPlan, plan: Plan) -> tuple[Curve, ...]:

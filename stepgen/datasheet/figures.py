@@ -2,12 +2,13 @@
 The tables of the datasheet: the plan's numbers and a verification's as finished text.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from stepgen.library.rates_view import microseconds
+from stepgen.library.text import listed
 from stepgen.plan.model import MotorPlan, Plan, RateLimit
 from stepgen.plan.rates import Clock
 from stepgen.plan.timings import plan_setting
@@ -21,6 +22,8 @@ _TENTHS_OF_US = 10_000_000  # in a second
 _RATES_SPS = (1, 10, 30, 100, 200, 300, 500, 1_000, 2_000, 3_000, 5_000, 10_000, 20_000)
 
 Row = tuple[str, ...]
+Rates = tuple[tuple[Row, Fraction], ...]
+"""Rows about rates, and the rate on the wire of each in steps/s."""
 
 
 @dataclass(frozen=True)
@@ -68,30 +71,59 @@ def ownership_table(plan: Plan) -> Table:
     return Table("Timers, vectors and ports", heading, tuple(rows))
 
 
-def rate_table(motor: MotorPlan, plan: Plan) -> Table:
+def rate_tables(plan: Plan) -> Iterator[Table]:
+    """
+    Yield what the timers make of usual rates, one table for the motors that have the same.
+
+    Those whose gears differ have a table for each gear, for its RPM.
+    """
+    alike: dict[Rates, dict[Fraction | None, list[str]]] = {}
+    for motor in plan.motors:
+        of_gear = alike.setdefault(_rates(motor, plan), {})
+        of_gear.setdefault(motor.steps_per_turn, []).append(motor.name)
+    for rates, of_gear in alike.items():
+        without = of_gear.pop(None, [])
+        if not of_gear:
+            yield _rate_table(rates, without, ())
+        for turn, names in of_gear.items():
+            heading = f"{listed(names)} RPM" if without else "RPM"
+            clock = Clock(plan.board.f_cpu_hz, steps_per_turn=turn or Fraction(1))
+            rpm = tuple(f"{float(clock.rpm(real)):.5g}" for _, real in rates)
+            yield _rate_table(rates, without + names, ((heading, *rpm),))
+            without = []
+
+
+def _rate_table(rates: Rates, names: list[str], columns: Sequence[Row]) -> Table:
+    """
+    Return the table of *rates*, with *columns* at the right, their headings first.
+    """
+    heading = ("steps/s", "virtual TOP", "prescaler x ticks", "on the wire", "ppm off")
+    rows = [heading, *(cells for cells, _ in rates)]
+    first, *others = ((*row, *more) for row, *more in zip(rows, *columns, strict=True))
+    return Table(f"{listed(names)}: rates", first, tuple(others))
+
+
+def _rates(motor: MotorPlan, plan: Plan) -> Rates:
     """
     Return what the timer of *motor* makes of usual rates, and of the highest that is accepted.
     """
-    f_cpu, turn = plan.board.f_cpu_hz, motor.steps_per_turn
-    fastest = plan.minimum_period_cycles
+    f_cpu, fastest = plan.board.f_cpu_hz, plan.minimum_period_cycles
     periods = [f_cpu // rate for rate in _RATES_SPS]
     wanted = [(period, Fraction(rate)) for period, rate in zip(periods, _RATES_SPS, strict=True)]
     allowed = [row for row in wanted if fastest < row[0] <= motor.timing.largest_period_cycles]
-    rows = []
+    rates = []
     for period, rate in (*allowed, (fastest, Fraction(f_cpu, fastest))):
         setting = plan_setting(motor.timing, period)
-        clock = Clock(f_cpu, steps_per_turn=turn or Fraction(1))
-        real = clock.rate_sps(setting.period_cycles)
-        row = (
+        real = Clock(f_cpu).rate_sps(setting.period_cycles)
+        cells = (
             f"{float(rate):.7g}",
             str(period),
             f"{setting.prescaler} x {setting.top + 1}",
             f"{float(real):.8g}",
             f"{round(deviation_ppm(real, rate)):+d}" if real != rate else "0",
         )
-        rows.append((*row, f"{float(clock.rpm(real)):.5g}") if turn else row)
-    heading = ("steps/s", "virtual TOP", "prescaler x ticks", "on the wire", "ppm off")
-    return Table(f"{motor.name}: rates", (*heading, "RPM") if turn else heading, tuple(rows))
+        rates.append((cells, real))
+    return tuple(rates)
 
 
 def safe_table(plan: Plan) -> Table:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from stepgen import __version__
 from stepgen.datasheet import figures
-from stepgen.datasheet.chart import Chart, motion_chart
+from stepgen.datasheet.chart import Chart, motion_charts
 from stepgen.datasheet.figures import Table
 from stepgen.datasheet.scene import Scene
 from stepgen.datasheet.wiring import wiring_scene
 from stepgen.library.prose import takes
 from stepgen.library.rates_view import lateness
 from stepgen.library.render import environment, spec_hash
-from stepgen.library.text import frequency, tidy
+from stepgen.library.text import frequency, listed, tidy
 from stepgen.library.view import make_view
 from stepgen.plan.model import Plan
 from stepgen.plan.warnings import plan_warnings
@@ -23,17 +23,6 @@ if TYPE_CHECKING:
     from stepgen.datasheet.report import Check, Report
 
 PATH = "extras/datasheet.html"
-
-
-@dataclass(frozen=True)
-class Speed:
-    """
-    The rates of a motor, and its speed against time.
-    """
-
-    rates: Table
-    chart: Chart
-    chart_id: str
 
 
 @dataclass(frozen=True)
@@ -61,7 +50,8 @@ class PageView:
     wires: tuple[Table, ...]
     ownership: Table
     beside: tuple[str, ...]
-    speeds: tuple[Speed, ...]
+    rates: tuple[Table, ...]
+    charts: tuple[Chart, ...]
     interrupts: Table
     memory: Table
     safe: Table
@@ -105,10 +95,8 @@ def page_view(plan: Plan, spec_text: str, report: "Report | None") -> PageView:
         wires=tuple(figures.wire_table(motor) for motor in plan.motors),
         ownership=figures.ownership_table(plan),
         beside=_beside(plan),
-        speeds=tuple(
-            Speed(figures.rate_table(motor, plan), motion_chart(motor, plan), f"chart-{motor.name}")
-            for motor in plan.motors
-        ),
+        rates=tuple(figures.rate_tables(plan)),
+        charts=tuple(motion_charts(plan)),
         interrupts=figures.interrupt_table(plan, report),
         memory=figures.memory_table(plan, report),
         safe=figures.safe_table(plan),
@@ -120,7 +108,10 @@ def page_view(plan: Plan, spec_text: str, report: "Report | None") -> PageView:
 
 
 def _beside(plan: Plan) -> tuple[str, ...]:
-    warnings = (f"{warning.motor}: {warning.reason}" for warning in plan_warnings(plan))
+    under: dict[str, list[str]] = {}
+    for warning in plan_warnings(plan):
+        under.setdefault(warning.reason, []).append(warning.motor)
+    warnings = (f"{listed(motors)}: {reason}" for reason, motors in under.items())
     return tuple(map(_plain, (*takes(plan), *warnings)))
 
 

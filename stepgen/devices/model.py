@@ -246,6 +246,13 @@ class Mcu:
         """
         return next((timer for timer in self.timers8 if timer.number == number), None)
 
+    @property
+    def has_usb(self) -> bool:
+        """
+        Tell whether it has USB of its own: Arduino's Serial then is that.
+        """
+        return any(vector.name == "USB_GEN_vect" for vector in self.vectors)
+
     def vector(self, name: str) -> Vector:
         """
         Return the vector that avr-libc calls *name*.

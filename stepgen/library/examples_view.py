@@ -112,6 +112,7 @@ class ExamplesView:
     absent: tuple[str, ...]
     speed_sps: int
     baud: int
+    waits_for_port: bool
     first_motor: str
     serial_note: tuple[str, ...]
     console_rows: tuple[ConsoleRow, ...]
@@ -156,6 +157,8 @@ def examples_view(plan: Plan) -> ExamplesView:
         ),
         speed_sps=example_speed_sps(plan),
         baud=_baud(plan),
+        # What is printed before somebody opens a port over USB is lost, and no reset follows.
+        waits_for_port=plan.board.mcu.has_usb,
         first_motor=plan.motors[0].name,
         serial_note=_serial_note(plan),
         console_rows=tuple(

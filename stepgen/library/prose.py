@@ -2,6 +2,8 @@
 Sentences about a plan, for comments and documents: what is wired where, and who owns what.
 """
 
+from collections.abc import Iterator, Mapping
+
 from stepgen.devices import Board
 from stepgen.library.api_view import CALL_CYCLES, dump_name
 from stepgen.library.sharing import Need, sharing_rules
@@ -114,8 +116,8 @@ def calls_comment(plan: Plan) -> tuple[str, ...]:
     return comment_lines(
         "Every function may be called from setup() and loop(), from a callback, and from an "
         "interrupt of the sketch, also in the middle of another call. Step interrupts wait for an "
-        f"interrupt of the sketch: a call takes at most {CALL_CYCLES} clocks there{callbacks}{searches}, and "
-        f"counts as a stretch with interrupts off.{prints}"
+        f"interrupt of the sketch: a call takes at most {CALL_CYCLES} clocks there{callbacks}"
+        f"{searches}, and counts as a stretch with interrupts off.{prints}"
     )
 
 
@@ -222,15 +224,29 @@ def takes(plan: Plan) -> tuple[str, ...]:
     """
     Return what the library takes from the sketch, a line each.
     """
+    under = {rule: [m.name for m in plan.motors if m.timing.rule == rule] for rule in _rules(plan)}
     rows = [
         f"Timer {motor.timing.timer.number} and `{motor.timing.vector}`: no `analogWrite()` on "
-        f"{_pwm(motor, plan.board)}. {motor.timing.rule}".rstrip()
+        f"{_pwm(motor, plan.board)}.{_own_rule(motor, under)}"
         for motor in plan.motors
     ]
+    rows.extend(f"{listed(names)}: {rule}" for rule, names in under.items() if names[1:])
     rows.extend(sharing_rules(plan))
     rows.extend(port_rule(motor, plan.board) for motor in plan.motors)
     rows.append("`GPIOR0`, `GPIOR1` and `GPIOR2`, which the Arduino core does not use.")
     return tuple(dict.fromkeys(filter(None, rows)))
+
+
+def _rules(plan: Plan) -> Iterator[str]:
+    return (motor.timing.rule for motor in plan.motors if motor.timing.rule)
+
+
+def _own_rule(motor: MotorPlan, under: Mapping[str, list[str]]) -> str:
+    """
+    Return what else holds of the timer of *motor*, unless it holds of other motors, too.
+    """
+    rule = motor.timing.rule
+    return f" {rule}" if under.get(rule) == [motor.name] else ""
 
 
 def paragraph(plan: Plan) -> str:

@@ -28,7 +28,7 @@ class Kind(IntEnum):
     ISR_EXIT = 5
     """RETI is complete: vector, bytes of stack that this run of the ISR took."""
     UART = 6
-    """A byte was given to USART0: address of UDR0, byte."""
+    """A byte was given to a USART, or the computer took it over USB: address of UDRn or UEDATX."""
     MASKED = 7
     """The main program cleared the I flag (fine recording only)."""
     UNMASKED = 8

@@ -43,6 +43,15 @@ class Loaded(ABC):
         Free what is held; more than once does no harm.
         """
 
+    def send_usb(self, data: bytes) -> None:
+        """
+        Let a program at the computer open the board's port over USB, and send *data* there.
+
+        Raises:
+            StepgenError: The simulator has no computer for that; only simavr has one.
+        """
+        raise StepgenError.of("no computer at its USB is simulated", text=data.decode("latin-1"))
+
     def symbol(self, name: str) -> int:
         """
         Return the data address of a variable, or the byte address in flash of a function.

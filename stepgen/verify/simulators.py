@@ -61,6 +61,9 @@ class Machine(Protocol):
     def send_serial(self, data: bytes) -> None:
         """Let *data* arrive at the first USART."""
 
+    def send_usb(self, data: bytes) -> None:
+        """Let a program at the computer open the board's port over USB, and send *data* there."""
+
     def drive_pin(self, pin_address: int, bit: int, *, high: bool) -> None:
         """Pull a pin high or low from outside."""
 
@@ -159,6 +162,8 @@ SIMAVR = Simulator(
             "flag-sbi",
             "uart-buffer",
             "uart-status",
+            "usb-banks",
+            "usb-port",
         }
         | _MASKING
         | _RESPONSES

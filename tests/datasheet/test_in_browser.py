@@ -15,7 +15,7 @@ from PIL import Image
 from pypdf import PdfReader
 
 from stepgen import api
-from tests.datasheet.pages import page, report_of, spec
+from tests.datasheet.pages import SPECS, page, report_of, spec
 
 LOOK = Path(__file__).with_name("look.js")
 DARK = {"light": (), "dark": ("--force-dark-mode",)}
@@ -29,7 +29,7 @@ LOOKED_AT = (
     "pro-mini-8mhz_28byj48",
     "mega_stacked_shields_variable",
 )
-PRINTED = (*LOOKED_AT, "uno_two_motors", "uno_servo_beside_variable", "mega1280_two_motors")
+LEAST_POINTS = 7.5
 
 CROWDED = """\
 library: Crowded
@@ -166,12 +166,11 @@ def test_the_picture_of_the_page(tmp_path: Path, scheme: str) -> None:
     assert len(colors) > 100
 
 
-@pytest.mark.parametrize("name", PRINTED)
-def test_it_prints_on_two_pages(tmp_path: Path, name: str) -> None:
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_it_prints_on_two_pages(tmp_path: Path, path: Path) -> None:
     """
-    With one motor and with two, with all that a verification adds.
+    So does that of every library, with one motor to three, and with all that a verification adds.
     """
-    path = spec(name)
     paper = tmp_path / "page.pdf"
     text = page(path, report_of(api.plan(path)))
     chromium(tmp_path, text, f"--print-to-pdf={paper}", "--no-pdf-header-footer")
@@ -183,3 +182,14 @@ def test_it_prints_on_two_pages(tmp_path: Path, name: str) -> None:
         assert (round(width), round(height)) == A4_POINTS
     assert "Wiring" in pages[0].extract_text()
     assert "45 checks passed" in pages[1].extract_text()
+
+
+def test_what_is_printed_is_large_enough_to_read() -> None:
+    """
+    No text around the pictures is smaller on paper than 7.5 points.
+    """
+    printed = page(spec("mega_pan_tilt")).partition("@media print {")[2].partition("</style>")[0]
+    sizes = [float(size) for size in re.findall(r"font-size: ([\d.]+)pt", printed)]
+
+    assert len(sizes) == printed.count("font")
+    assert min(sizes) == LEAST_POINTS

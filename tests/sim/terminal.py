@@ -9,17 +9,25 @@ from stepgen.verify.events import Kind
 from stepgen.verify.simavr import Machine
 
 _GLANCES_PER_SECOND = 50
+_UEDATX = 0xF1  # what a byte over USB comes from; avr-libc's iom32u4.h
 
 
 class Terminal:
     """
     The program *elf* on the board of *plan*, just out of reset.
+
+    A port over USB is opened as soon as it is there, or with the first line that is typed.
     """
 
-    def __init__(self, elf: Path, plan: Plan) -> None:
-        self.machine = Machine(elf, mcu=plan.board.mcu.name, f_cpu_hz=plan.board.f_cpu_hz)
+    def __init__(self, elf: Path, plan: Plan, *, opened: bool = True) -> None:
+        chip = plan.board.mcu
+        self.machine = Machine(elf, mcu=chip.name, f_cpu_hz=plan.board.f_cpu_hz)
         self._f_cpu_hz = plan.board.f_cpu_hz
         self._read = 0
+        self._over_usb = chip.has_usb
+        self.type = self.machine.send_usb if chip.has_usb else self.machine.send_serial
+        if opened:
+            self.type(b"")  # opens a port over USB
 
     @property
     def text(self) -> str:
@@ -28,6 +36,8 @@ class Terminal:
         """
         events = self.machine.events()
         sent = events[events["kind"] == Kind.UART]
+        if self._over_usb:
+            sent = sent[sent["source"] == _UEDATX]  # what goes to Serial1 is another's
         return bytes(sent["value"].astype("u1")).decode("ascii")
 
     def wait(self, seconds: float) -> None:
@@ -52,5 +62,5 @@ class Terminal:
         """
         Type *line* and Return, and return what comes up to the line *expected*.
         """
-        self.machine.send_serial(f"{line}\r\n".encode("ascii"))
+        self.type(f"{line}\r\n".encode("ascii"))
         return self.until(f"{expected}\r\n", seconds=seconds)

@@ -11,11 +11,14 @@ from stepgen import api
 from stepgen.verify.compilers import default_compiler
 from stepgen.verify.events import Kind
 from stepgen.verify.simavr import Machine
-from tests.sim.example_builds import build_example
+from tests.sim.example_builds import build_example, example_names
 from tests.sim.terminal import Terminal
 
 SPECS = Path(__file__).parents[2] / "specs"
 F_CPU_HZ = 16_000_000
+CONSOLES = [
+    path.stem for path in sorted(SPECS.glob("*.yaml")) if "Console" in example_names(api.plan(path))
+]
 OUT_OF_RANGE = 100_000  # more than motorTimerCalcPerSecond() can take
 BESIDE = """
 library: Beside
@@ -81,12 +84,29 @@ def test_the_smallest_sketch_turns_every_motor(stem: str) -> None:
         assert len(found) > 200
 
 
-def test_the_console_moves_the_motor_as_it_is_told() -> None:
+@pytest.mark.parametrize("stem", CONSOLES)
+def test_every_console_makes_the_steps_that_are_typed(stem: str) -> None:
+    """
+    Each motor of each library goes there and back, over a UART or over USB.
+    """
+    plan = api.plan(SPECS / f"{stem}.yaml")
+    board = terminal(stem, "Console")
+    board.until("type help\r\n")
+    for motor in plan.motors:
+        name = f"{motor.name} " if plan.motors[1:] else ""
+        for steps, position in ((20, 20), (-30, -10)):
+            board.enter(f"{name}steps {steps}", "ok")
+            board.wait(0.3)
+            board.enter(f"{name}status", f"{name}at rest, at step {position}")
+
+
+@pytest.mark.parametrize("stem", ["uno_uln2003_28byj48", "leonardo_motor_shield"])
+def test_the_console_moves_the_motor_as_it_is_told(stem: str) -> None:
     """
     Speed, steps, stop and status, with wrong input answered, while the motor turns.
     """
-    board = terminal("uno_uln2003_28byj48", "Console")
-    spec = SPECS / "uno_uln2003_28byj48.yaml"
+    board = terminal(stem, "Console")
+    spec = SPECS / f"{stem}.yaml"
     board.until("type help\r\n")
 
     board.enter("status", "at rest, at step 0")
@@ -120,7 +140,7 @@ def test_the_console_says_what_can_be_typed_and_that_the_motor_runs() -> None:
     board = terminal("uno_variable_speed", "Console")
     board.until("type help\r\n")
 
-    board.machine.send_serial(b"help\n")
+    board.type(b"help\n")
     shown = board.until("where is it\n", seconds=0.3)
     words = [line.split()[0] for line in shown.splitlines() if line.strip()]
     assert words == ["speed", "steps", "ramp", "stop", "hold", "release", "status"]

@@ -372,6 +372,44 @@ def test_serial_line_goes_both_ways(start: Start) -> None:
     assert (machine.serial_waiting, machine.serial_lost) == (0, 0)
 
 
+def test_nothing_passes_over_usb_before_somebody_opens_the_port(start: Start) -> None:
+    """
+    No request comes by itself; once the port is open, what waits arrives, and the answer.
+    """
+    machine = start("usb_port", mcu="atmega32u4")
+    machine.run_until(50 * F_CPU_HZ // 1000)
+    asked = machine.read_ram(machine.symbol("count"), 1)
+    machine.send_usb(b"HAL")
+    waiting = machine.usb_waiting
+    machine.run_until(130 * F_CPU_HZ // 1000)
+
+    sent = of_kind(machine.events(), Kind.UART)
+    assert asked == b"\0"
+    assert (waiting, machine.usb_waiting) == (3, 0)
+    assert bytes(sent["value"].astype("u1")) == b"IBM"
+    assert set(sent["source"]) == {0xF1}  # UEDATX
+
+
+def test_a_board_that_refuses_a_request_stops_the_run(start: Start) -> None:
+    """
+    A STALL (22.11) to SET_CONTROL_LINE_STATE is an error that names the request.
+    """
+    machine = start("usb_port", mcu="atmega32u4", STALLS=1)
+    machine.send_usb(b"HAL")
+    with pytest.raises(StepgenError, match="refuses request 34 of 21 over USB"):
+        machine.run_until(130 * F_CPU_HZ // 1000)
+
+
+def test_a_chip_without_usb_has_no_port_there(start: Start) -> None:
+    """
+    Typing over USB to an ATmega328P is an error.
+    """
+    machine = start("serial")
+    machine.send_usb(b"HAL")
+    with pytest.raises(StepgenError, match="the chip has no USB"):
+        machine.run_until(10_000)
+
+
 def test_stack_of_an_isr_counts_its_return_address(start: Start) -> None:
     """
     The stack of an ISR goes from its return address to the deepest push.

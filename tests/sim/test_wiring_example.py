@@ -13,11 +13,17 @@ from stepgen import api
 from stepgen.plan.coils import CoilDrive
 from stepgen.verify.compilers import default_compiler
 from stepgen.verify.events import Kind
-from tests.sim.example_builds import build_example
+from tests.sim.example_builds import build_example, example_names
 from tests.sim.rotor import turned
 from tests.sim.terminal import Terminal
 
-SPEC = Path(__file__).parents[2] / "specs" / "uno_uln2003_28byj48.yaml"
+SPECS = Path(__file__).parents[2] / "specs"
+SPEC = SPECS / "uno_uln2003_28byj48.yaml"
+WITH_COILS = [
+    path.stem
+    for path in sorted(SPECS.glob("*.yaml"))
+    if "WiringTest" in example_names(api.plan(path))
+]
 PINS = ("D8", "D9", "D10", "D11")  # bits 0 to 3 of port B
 STEPS = 256
 SETTLING = 2  # phases: the rotor may stand right opposite to the first coil
@@ -79,9 +85,9 @@ def advice() -> Callable[..., tuple[str, ...]]:
         if (number, forward) not in known:
             board = begun()
             board.until(QUESTION, seconds=15)
-            board.machine.send_serial(f"{number}\r\n".encode())
+            board.type(f"{number}\r\n".encode())
             board.until(DIRECTION, seconds=5)
-            board.machine.send_serial(b"y\r\n" if forward else b"n\r\n")
+            board.type(b"y\r\n" if forward else b"n\r\n")
             printed = board.until("That is all", seconds=1)
             (pins,) = re.findall(r"^  pins: \[(.*)\]\r$", printed, re.MULTILINE)
             known[number, forward] = tuple(pins.split(", "))
@@ -141,11 +147,58 @@ def test_a_rightly_wired_motor_is_told_so() -> None:
     assert board.machine.cycle / 16_000_000 == pytest.approx(2.56 + 0.5, abs=0.1)
     board.until(QUESTION, seconds=15)
     board.enter("1", "Was that forward for you: y or n?", seconds=5)
-    board.machine.send_serial(b"y")
+    board.type(b"y")
 
     assert "All is as the spec has it:\r\n  pins: [D8, D9, D10, D11]\r\n" in board.until(
         "That is all", seconds=1
     )
+
+
+@pytest.mark.parametrize("stem", WITH_COILS)
+def test_every_wiring_test_ends_with_the_pins_of_its_spec(stem: str) -> None:
+    """
+    Motor after motor, with 1 and y typed, over a UART or over USB.
+    """
+    path = SPECS / f"{stem}.yaml"
+    plan = api.plan(path)
+    board = Terminal(build_example(path, "WiringTest", default_compiler(), HASTE), plan)
+    for motor in plan.motors:
+        if not isinstance(motor.drive, CoilDrive) or motor.drive.kind != "four-wire":
+            continue
+        board.until(f"motor {motor.name}\r\n", seconds=1)
+        board.until(QUESTION, seconds=15)
+        board.type(b"1")
+        board.until(DIRECTION, seconds=5)
+        board.type(b"y")
+        board.until("All is as the spec has it:\r\n  pins: [", seconds=1)
+        printed = board.until("]").removesuffix("]").split(", ")
+        coils = [wire.pin.label for wire in motor.drive.wires]
+        assert printed == coils
+    board.until("That is all", seconds=1)
+
+
+def test_over_usb_nothing_is_asked_until_somebody_listens() -> None:
+    """
+    The motor stands still until the Serial Monitor is open; then the first try begins.
+    """
+    path = SPECS / "micro_slider.yaml"
+    plan = api.plan(path)
+    port = plan.board.mcu.port("F").port.address
+
+    def coil_writes(board: Terminal) -> int:
+        rows = board.machine.events()
+        return int(((rows["kind"] == Kind.PORT) & (rows["source"] == port)).sum())
+
+    elf = build_example(path, "WiringTest", default_compiler(), HASTE)
+    board = Terminal(elf, plan, opened=False)
+    board.wait(1)
+    still = not coil_writes(board)
+    board.type(b"")
+    board.until("motor head\r\norder 1\r\n", seconds=0.2)
+    board.wait(0.3)
+
+    assert still
+    assert coil_writes(board) > STEPS
 
 
 def test_no_smooth_order_gives_advice_and_another_try() -> None:
@@ -154,9 +207,9 @@ def test_no_smooth_order_gives_advice_and_another_try() -> None:
     """
     board = begun()
     board.until(QUESTION, seconds=15)
-    board.machine.send_serial(b"7")
+    board.type(b"7")
     board.until(QUESTION)
     board.enter("0", "A wire is loose, or one of the four goes to no coil.", seconds=1)
     board.until("then type r\r\n")
-    board.machine.send_serial(b"r")
+    board.type(b"r")
     board.until("order 1\r\n")

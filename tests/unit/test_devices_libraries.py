@@ -33,8 +33,7 @@ def test_libraries_take_the_vectors_they_define(
     """
     The vectors of a library are those in its object file; where there are none, it is absent.
     """
-    has_usb = any(vector.name == "USB_GEN_vect" for vector in board.mcu.vectors)
-    source = USB_SOURCE if has_usb and name == "Serial" else LIBRARY_SOURCES[name]
+    source = USB_SOURCE if board.mcu.has_usb and name == "Serial" else LIBRARY_SOURCES[name]
     defined = vectors_defined_by(source)
     claims = library_claims(name, board)
 

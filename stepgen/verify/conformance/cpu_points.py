@@ -4,7 +4,7 @@ Points about the CPU: cycles of instructions, interrupts, ports, and the small p
 
 from collections.abc import Iterator
 
-from stepgen.verify.conformance.lab import F_CPU_HZ, Lab, cycles, gaps, of_kind, ram
+from stepgen.verify.conformance.lab import Lab, cycles, gaps, of_kind, ram
 from stepgen.verify.conformance.point import MEGA_1280_CHIP, MEGA_CHIP, USB_CHIP, Judge, point
 from stepgen.verify.events import Kind
 from stepgen.verify.simulators import Machine
@@ -245,26 +245,6 @@ def uart_status(lab: Lab) -> Iterator[str]:
         seen = ram(machine, "seen", 4)
         if seen != [0x22, 0x62, 0x62, 0x22]:
             yield f"UCSR0A is {bytes(seen).hex()}, on the chip 22626222"
-
-
-@point(
-    "usb-frames",
-    "The PLL of USB locks, and at a computer a frame begins each millisecond",
-    "Atmel-7766: 6.11, 22.18.1",
-    USB_CHIP,
-)
-def usb_frames(lab: Lab) -> Iterator[str]:
-    """
-    See PB5 toggle each 16 000 cycles, give or take the rjmp of the main loop.
-    """
-    with lab.running("usb") as machine:
-        if not machine.run_until_mark(1, limit_cycles=1000):
-            yield "the PLL does not lock"
-            return
-        machine.run_until(100_000)
-        late = [abs(gap - F_CPU_HZ // 1000) for gap in gaps(cycles(machine, Kind.PORT, PORTB))]
-        if len(late) < 4 or max(late) > 2:  # noqa: PLR2004 - five frames, one instruction
-            yield f"frames are off by {late} cycles"
 
 
 @point("pin-change", "A change of an input raises its pin change interrupt", "13.2")

@@ -7,7 +7,7 @@ enum event_kind {
     EVENT_MARK = 3,      /* source: EEDR; value: the byte written */
     EVENT_ISR_ENTER = 4, /* source: vector; value: interrupted byte address in flash */
     EVENT_ISR_EXIT = 5,  /* source: vector; value: stack bytes this run of it took */
-    EVENT_UART = 6,      /* source: UDR0; value: the byte sent */
+    EVENT_UART = 6,      /* source: UDRn, or UEDATX for USB; value: the byte sent */
     EVENT_MASKED = 7,    /* the main program cleared the I flag (fine recording only) */
     EVENT_UNMASKED = 8,  /* the main program set the I flag (fine recording only) */
     EVENT_RAISE = 9      /* source: vector of a timer but 0; value: 1 if already raised */
@@ -45,6 +45,8 @@ int machine_drive_pin(machine *m, uint16_t pin_address, int bit, int level);
 void machine_send_serial(machine *m, const uint8_t *bytes, uint32_t size);
 uint32_t machine_serial_waiting(const machine *m);
 uint32_t machine_serial_lost(const machine *m);
+void machine_send_usb(machine *m, const uint8_t *bytes, uint32_t size);
+uint32_t machine_usb_waiting(const machine *m);
 
 uint32_t machine_isr_stack(const machine *m, int vector);
 uint32_t machine_stack_deepest(const machine *m);

@@ -88,7 +88,8 @@ void machine_free(machine *m)
 {
     avr_terminate(m->avr);
     free(m->avr);
-    free(m->serial);
+    free(m->serial.bytes);
+    free(m->host.line.bytes);
     free(m);
 }
 

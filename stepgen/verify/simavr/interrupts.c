@@ -8,8 +8,11 @@
 #include <simavr/sim_core.h>
 #include <stddef.h>
 
-static int is_pending(const avr_t *avr, avr_int_vector_t *v)
+static int is_pending(const machine *m, avr_int_vector_t *v)
 {
+    const avr_t *avr = m->avr;
+    if (v == m->usb.general || v == m->usb.endpoint)
+        return usb_is_pending(m, v);
     if (!avr_regbit_get((avr_t *)avr, v->enable))
         return 0;
     return v->raised.reg ? avr_regbit_get((avr_t *)avr, v->raised) : v->pending;
@@ -18,7 +21,7 @@ static int is_pending(const avr_t *avr, avr_int_vector_t *v)
 static avr_int_vector_t *first_pending(machine *m)
 {
     for (unsigned i = 0; i < m->vector_count; i++)
-        if (is_pending(m->avr, m->vectors[i]))
+        if (is_pending(m, m->vectors[i]))
             return m->vectors[i];
     return NULL;
 }

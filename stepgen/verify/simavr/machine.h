@@ -7,9 +7,11 @@
 #include <simavr/sim_avr.h>
 
 #include "harness.h"
+#include "line.h"
 #include "mcus.h"
 #include "recorder.h"
 #include "timer.h"
+#include "usb.h"
 
 enum { MAX_VECTORS = 64, MAX_DEPTH = 64, MAX_ERROR = 400 };
 
@@ -28,6 +30,7 @@ typedef enum {
     ROLE_DATA,   /* UDRn */
     ROLE_STATUS, /* UCSRnA */
     ROLE_CONTROL, /* UCSRnB */
+    ROLE_USB,    /* of the USB device controller */
 } role;
 
 typedef struct {
@@ -70,10 +73,11 @@ struct machine {
     avr_uart_t *uart;
     uint64_t shifting_until;  /* the transmitter's shift register is busy */
     uint8_t buffered;         /* and another byte waits */
-    uint8_t *serial;
-    uint32_t serial_size, serial_next, serial_lost;
+    line serial;
+    uint32_t serial_lost;
 
-    avr_int_vector_t *frame_begins; /* the interrupt of USB; NULL without USB */
+    usb_device usb;
+    usb_host host;
 
     int stop, wanted_mark, marked;
     int fine, was_enabled;
@@ -97,6 +101,7 @@ void interrupts_service(machine *m);
 /* registers.c: the write hooks. */
 void registers_install(machine *m);
 void registers_hook(machine *m, uint16_t address);
+void registers_take_usb(machine *m, uint16_t address, avr_io_read_t read);
 uint64_t registers_write_edge(const avr_t *avr);
 uint64_t registers_read_edge(const avr_t *avr);
 
@@ -105,8 +110,5 @@ void serial_install(machine *m);
 void serial_transmit(machine *m, uint8_t value, uint64_t edge);
 void serial_status(machine *m, uint8_t value);
 void serial_settle(machine *m);
-
-/* usb.c */
-void usb_install(machine *m);
 
 #endif

@@ -173,6 +173,21 @@ class Machine(Loaded):
         """
         return int(self._lib.machine_serial_lost(self._open))
 
+    def send_usb(self, data: bytes) -> None:
+        """
+        Let a program at the computer open the board's port over USB, once, and send *data* there.
+
+        What it takes from the board is recorded as UART.
+        """
+        self._lib.machine_send_usb(self._open, data, len(data))
+
+    @property
+    def usb_waiting(self) -> int:
+        """
+        How many bytes of `send_usb` the board has not taken yet.
+        """
+        return int(self._lib.machine_usb_waiting(self._open))
+
     def drive_pin(self, pin_address: int, bit: int, *, high: bool) -> None:
         """
         Pull the pin *bit* of the port whose PINx is at *pin_address* high or low from outside.

@@ -138,6 +138,9 @@ static void act(slot *s, uint16_t address, uint8_t value)
     case ROLE_STATUS:
         serial_status(m, value);
         break;
+    case ROLE_USB:
+        usb_write(m, address, value);
+        break;
     default:
         pass_on(s, address, value);
     }
@@ -179,6 +182,14 @@ static slot *take(machine *m, uint16_t address, role as)
     slot *s = &m->slots[AVR_DATA_TO_IO(address)];
     s->role = as;
     return s;
+}
+
+/* Its reads are *read*'s; of what is stored if that is NULL. */
+void registers_take_usb(machine *m, uint16_t address, avr_io_read_t read)
+{
+    take(m, address, ROLE_USB);
+    m->avr->io[AVR_DATA_TO_IO(address)].r.c = read;
+    m->avr->io[AVR_DATA_TO_IO(address)].r.param = m;
 }
 
 static void take_timer(machine *m, timer *t)

@@ -1,7 +1,6 @@
 /* The first USART's line: bytes out are recorded, bytes in arrive one per byte time. simavr's own
  * pacing has a bit too many and no transmit buffer, and is not used. */
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "machine.h"
@@ -83,15 +82,15 @@ void serial_status(machine *m, uint8_t value)
 static avr_cycle_count_t on_byte_time(avr_t *avr, avr_cycle_count_t when, void *param)
 {
     machine *m = param;
-    if (m->serial_next == m->serial_size)
+    if (!line_waiting(&m->serial))
         return 0;
     if (!(*at(m, UCSRB) & RXEN))
         return when + RETRY_CYCLES;
     if (uart_fifo_get_read_size(&m->uart->input) < RECEIVER_BYTES)
-        uart_fifo_write(&m->uart->input, m->serial[m->serial_next]);
+        uart_fifo_write(&m->uart->input, *line_next(&m->serial));
     else
         m->serial_lost++;
-    m->serial_next++;
+    m->serial.next++;
     m->uart->rx_cnt = 0;
     m->uart->rxc_raise_time = when;
     avr_raise_interrupt(avr, &m->uart->rxc);
@@ -100,20 +99,10 @@ static avr_cycle_count_t on_byte_time(avr_t *avr, avr_cycle_count_t when, void *
 
 void machine_send_serial(machine *m, const uint8_t *bytes, uint32_t size)
 {
-    uint32_t waiting = m->serial_size - m->serial_next;
-    uint8_t *line = malloc(waiting + size + 1u);
-    if (!m->uart || !line) {
-        free(line);
+    if (!m->uart || !line_add(&m->serial, bytes, size)) {
         machine_fail(m, "no memory for the input of the USART");
         return;
     }
-    if (waiting)
-        memcpy(line, m->serial + m->serial_next, waiting);
-    memcpy(line + waiting, bytes, size);
-    free(m->serial);
-    m->serial = line;
-    m->serial_next = 0;
-    m->serial_size = waiting + size;
     if (!avr_cycle_timer_status(m->avr, on_byte_time, m))
         avr_cycle_timer_register(m->avr, 1, on_byte_time, m);
 }
@@ -125,7 +114,7 @@ uint32_t machine_serial_lost(const machine *m)
 
 uint32_t machine_serial_waiting(const machine *m)
 {
-    return m->serial_size - m->serial_next;
+    return line_waiting(&m->serial);
 }
 
 void serial_install(machine *m)

@@ -50,7 +50,7 @@ static Motor motors[] = {
 };
 constexpr uint8_t kMotors = sizeof(motors) / sizeof(motors[0]);
 
-constexpr int kRoom = 62;  // no line that is printed is longer; the core's buffer holds 63
+constexpr int kRoom = 62;  // no line that is printed is longer; the core has room for more
 
 static char line[64];                   // what was typed; more than fits is cut off
 static const char *helpLeft = nullptr;  // what of the help is still to be printed
@@ -189,6 +189,7 @@ void setup() {
   headShieldInit();
   stopAll();  // from here on each status says that the motor is at rest
   for (Motor &motor : motors) motor.interval = motorTimerCalcPerSecond(200);
+  while (!Serial) {}  // until the Serial Monitor is open
   Serial.println(F("type help"));
 }
 

@@ -99,6 +99,7 @@ static void test(const Motor &motor) {
 
 void setup() {
   Serial.begin(115200);
+  while (!Serial) {}  // until the Serial Monitor is open
   for (const Motor &motor : motors) test(motor);
   Serial.println(F("That is all; reset the board to begin again."));
 }

@@ -14,7 +14,7 @@ static const char kHelp[] PROGMEM =
     "release      coils off, while it stands\n"
     "status       does it run, and where is it\n";
 
-constexpr int kRoom = 62;  // no line that is printed is longer; the core's buffer holds 63
+constexpr int kRoom = 62;  // no line that is printed is longer; the core has room for more
 
 static char line[64];                   // what was typed; more than fits is cut off
 static const char *helpLeft = nullptr;  // what of the help is still to be printed
