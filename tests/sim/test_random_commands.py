@@ -110,7 +110,7 @@ def random_scenario(seed: int, plan: Plan) -> Scenario:
         if timed and random.random() < SILENCES:
             actions.append(Wait(timed * plan.board.f_cpu_hz // 1000))
         actions.append(Call(CallKind.READ, motor))
-    # Axes take long to come to speed: a hostile sketch would take minutes, and has its own scenario.
+    # Axes take long to come to speed, minutes with a hostile sketch: that has its own scenario.
     has_axis = any(is_axis(motor) for motor in plan.motors)
     loop = random.choice([Loop.BUSY] if has_axis else [Loop.BUSY, Loop.HOSTILE])
     return Scenario(f"seed {seed}", loop, tuple(actions))
