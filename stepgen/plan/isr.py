@@ -44,6 +44,7 @@ class Motion:
         ladder: The ramp of its moves, else None.
         queue: How many moves can wait.
         cruise_interval_256: The interval at its cruise speed, in 1/256 clocks.
+        wish_field: Where in the motor's spec stands how fast it will be at most.
     """
 
     kind: str
@@ -62,6 +63,7 @@ class Motion:
     ladder: Ladder | None = None
     queue: int = 0
     cruise_interval_256: int = 0
+    wish_field: tuple[str, ...] = ("max_steps_per_second",)
 
 
 @dataclass(frozen=True)

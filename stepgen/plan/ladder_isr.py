@@ -50,7 +50,7 @@ def _advance() -> tuple[Instruction, ...]:
     Return what moves the compare register to the next step; r25 is on the stack.
     """
     return (
-        Instruction("lds   r24, %[fraction]", 2, "when this step was due, and the interval", "22"),
+        Instruction("lds   r24, %[fraction]", 2, "when this step was due, and the interval"),
         Instruction("lds   r25, %[interval]", 2, "more: first 1/256 clocks,"),
         Instruction("add   r24, r25", 1),
         Instruction("sts   %[fraction], r24", 2),
@@ -70,7 +70,7 @@ def _advance() -> tuple[Instruction, ...]:
 
 def _next_level(storage: Storage) -> tuple[Instruction, ...]:
     """
-    Return what begins the next level of a row, if there is one, and goes on as after each step.
+    Return what begins the next level of a row, if there is one.
     """
     added = [
         (
@@ -93,7 +93,6 @@ def _next_level(storage: Storage) -> tuple[Instruction, ...]:
         *(instruction for byte in added for instruction in byte),
         Instruction("lds   r24, %[length]", 2, "and lasts for so many steps"),
         storage.count.store("r24", "count"),
-        Instruction("rjmp  22b", 2),
     )
 
 
@@ -136,6 +135,14 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         *more_laps,
         *step,
         *gate.go_on,
+        *end_code(kernel, (), 2 + total_cycles(gate.go_on)),
+        *gate.advance,
+        *_renamed(gate.check, "13f", "14f"),
+        *leave,
+        reti,
+        replace(leave[0], label="14"),
+        *leave[1:],
+        Instruction(f"jmp   {handler}_late", 3),
         Instruction("pop   r25", 2, label="16"),
         *end_code(kernel, (), sum(decide) + 2),
         replace(leave[0], label="2"),
@@ -146,6 +153,14 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
     until_step = arrival + total_cycles((*entry, *count))
     until_rare_step = until_step + 1 + _NO_LAPS_CYCLES
     usual_cycles = until_step + total_cycles(usual_way)
+    next_level = (
+        *step,
+        *gate.go_on,
+        *end_code(kernel, (), 2 + total_cycles(gate.go_on)),
+        *punctual,
+        *leave,
+        reti,
+    )
     tail = total_cycles((*end_code(kernel, (), sum(decide) + 2), *leave)) + 3
     to_handler = until_rare_step + total_cycles(step) + sum(decide[1:]) + 2 + tail
     return HotPath(
@@ -154,7 +169,7 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         clock=(),
         late=late,
         usual_cycles=usual_cycles,
-        recurring_cycles=usual_cycles + 1 + _NO_LAPS_CYCLES + total_cycles(gate.go_on),
+        recurring_cycles=until_rare_step + total_cycles(next_level),
         lap_cycles=(),
         overrun_cycles=None,
         clock_cycles=usual_cycles,
@@ -163,3 +178,12 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         boundary_entry_cycles=to_handler,
         think_entry_cycles=to_handler,
     )
+
+
+def _renamed(
+    instructions: tuple[Instruction, ...], label: str, other: str
+) -> tuple[Instruction, ...]:
+    """
+    Return *instructions* with branches to *other* in place of *label*.
+    """
+    return tuple(replace(one, text=one.text.replace(label, other)) for one in instructions)

@@ -132,7 +132,7 @@ def _report_wishes(
     for motor in motors:
         limits = rates[motor.name]
         period = _period_of(motor, board)
-        place = _at(faults, motor.name).at("max_steps_per_second")
+        place = _at(faults, motor.name).at(*motor.motion.wish_field)
         if period and period < limits[-1].period_cycles:
             highest = int(limits[-1].steps_per_second)
             fine = [limit.beside for limit in limits[1:-1] if limit.period_cycles <= period]

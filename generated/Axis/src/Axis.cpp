@@ -59,6 +59,7 @@ struct AxisMotion {
   uint32_t origin;  // the position that the sketch calls 0
   uint8_t row;  // where it is on the ramp: the row,
   uint8_t rung;  // the level in it,
+  uint8_t rungs;  // of so many,
   uint16_t height;  // how many steps it takes from there to rest,
   uint32_t pace;  // and the interval there
   uint16_t goal;  // how high it may climb, in steps,
@@ -72,7 +73,8 @@ struct AxisMotion {
 // A row of a ramp: levels of equal length, whose intervals differ by the same slope.
 struct Row {
   uint8_t levels;
-  uint8_t shift;  // a level has so many steps, as a power of two
+  uint8_t steps;  // of a level: a power of two
+  uint8_t share;  // 256 / steps, which is 0 for 256
   uint32_t slope;  // in 1/256 clocks
 };
 
@@ -84,12 +86,21 @@ struct PackedRow {
   uint16_t slope;
 };
 
+static const uint8_t kPowers[] PROGMEM = {1, 2, 4, 8, 16, 32, 64, 128, 0};
+
 INLINE Row readRow(const PackedRow *packed) {
   const uint8_t shifts = pgm_read_byte(&packed->shifts);
   uint32_t slope = pgm_read_word(&packed->slope);
   if (shifts & 0x10) slope <<= 8;
   if (shifts & 0x20) slope <<= 16;
-  return {pgm_read_byte(&packed->levels), static_cast<uint8_t>(shifts & 0x07), slope};
+  const uint8_t *power = kPowers + (shifts & 0x0F);
+  const uint8_t *share = kPowers + 8 - (shifts & 0x0F);
+  return {pgm_read_byte(&packed->levels), pgm_read_byte(power), pgm_read_byte(share), slope};
+}
+
+// How many whole levels of a row so many steps are.
+INLINE uint16_t levelsIn(uint16_t steps, const Row &row) {
+  return row.share ? static_cast<uint32_t>(steps) * row.share >> 8 : steps;
 }
 
 constexpr uint32_t kFar = 1UL << 30;  // steps ahead of a motor that runs without an end
@@ -270,7 +281,7 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   breq  1f                       \n"  // 1  each 255 steps, and where a move begins or ends
       "   sbi   %[port0], 2              \n"  // 2  STEP rises: one step
       "   push  r25                      \n"  // 2
-      "22: lds   r24, %[fraction]        \n"  // 2  when this step was due, and the interval
+      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
       "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
       "   add   r24, r25                 \n"  // 1
       "   sts   %[fraction], r24         \n"  // 2
@@ -331,7 +342,37 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   sts   %[interval] + 2, r24     \n"  // 2
       "   lds   r24, %[length]           \n"  // 2  and lasts for so many steps
       "   out   %[count], r24            \n"  // 1
-      "   rjmp  22b                      \n"  // 2
+      "   cbi   %[port0], 2              \n"  // 2  STEP falls
+      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
+      "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
+      "   add   r24, r25                 \n"  // 1
+      "   sts   %[fraction], r24         \n"  // 2
+      "   lds   r24, %[due]              \n"  // 2  then clocks
+      "   lds   r25, %[interval] + 1     \n"  // 2
+      "   adc   r24, r25                 \n"  // 1
+      "   sts   %[due], r24              \n"  // 2
+      "   lds   r24, %[due] + 1          \n"  // 2
+      "   lds   r25, %[interval] + 2     \n"  // 2
+      "   adc   r24, r25                 \n"  // 1
+      "   sts   %[due] + 1, r24          \n"  // 2
+      "   sts   %[ocrHigh], r24          \n"  // 2  waits in TEMP
+      "   lds   r25, %[due]              \n"  // 2
+      "   sts   %[ocrLow], r25           \n"  // 2  the next match is the next step
+      "   lds   r24, %[tcntLow]          \n"  // 2
+      "   sub   r24, r25                 \n"  // 1
+      "   lds   r24, %[tcntHigh]         \n"  // 2
+      "   lds   r25, %[due] + 1          \n"  // 2
+      "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
+      "   pop   r25                      \n"  // 2
+      "   brpl  14f                      \n"  // 1
+      "   in    r24, %[scratch]          \n"  // 1
+      "   out   %[sreg], r24             \n"  // 1
+      "   pop   r24                      \n"  // 2
+      "   reti                           \n"  // 4
+      "14: in    r24, %[scratch]         \n"  // 1
+      "   out   %[sreg], r24             \n"  // 1
+      "   pop   r24                      \n"  // 2
+      "   jmp   __vector_slide_boundary_late\n"  // 3
       "16: pop   r25                     \n"  // 2
       "   rjmp  .+0                      \n"  // 2
       "   rjmp  .+0                      \n"  // 2
@@ -401,73 +442,70 @@ INLINE uint8_t slidePlace(uint8_t behind) {
 // It climbs while there is room to come down again, so it never has to know how a way goes on.
 SHARED void slideDecide() {
   auto &motion = near(slideMotion);
-  uint8_t mode = motion.mode;
-  uint32_t left = motion.rest;
-  if ((mode & (kEndless | kTurning)) == kEndless && left < kFar) {  // the end stays far away
-    left += kFar;
-    motion.end += mode & kReverse ? -kFar : kFar;
+  if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
+    motion.rest += kFar;  // the end stays far away
+    motion.end += motion.mode & kReverse ? -kFar : kFar;
   }
-  const uint32_t slack = left - motion.height;  // steps before it must come down
-  Row row = readRow(slideRamp + motion.row);
-  uint32_t interval = motion.pace;
-  uint32_t change = 0;
-  uint8_t levels;  // after the first one
-  uint8_t first;  // steps of the first one
-  uint8_t length = 1 << row.shift;
-  if (slack == 0 || motion.height > motion.goal) {
-    if (motion.rung == 0) {
-      row = readRow(slideRamp + --motion.row);
-      motion.rung = row.levels;
-      length = 1 << row.shift;
-    }
-    levels = --motion.rung;
-    motion.height -= length;
-    if (slack) {
-      const uint16_t above = (motion.height - motion.goal) >> row.shift;
+  const uint16_t height = motion.height;
+  const uint16_t goal = motion.goal;
+  uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
+  if (slack > 256UL * kFlatSteps) slack = 256UL * kFlatSteps;
+  const uint16_t room = slack;
+  const bool descends = room == 0 || height > goal;
+  uint8_t rung = motion.rung;
+  if (descends) {
+    if (rung == 0) --motion.row;
+  } else if (rung == motion.rungs && height < goal) {
+    ++motion.row;
+    rung = 0;
+  }
+  const Row row = readRow(slideRamp + motion.row);
+  motion.rungs = row.levels;
+  motion.interval = motion.pace;
+  motion.change = 0;
+  uint8_t length = row.steps;
+  uint8_t first = length;  // steps of the first level
+  uint8_t levels;  // and how many follow it
+  if (descends) {
+    if (rung == 0) rung = row.levels;
+    levels = --rung;
+    if (room) {
+      const uint16_t above = levelsIn(height - goal, row) - 1;
       if (above < levels) levels = above;
     }
-    change = row.slope;
-    interval += change;
-    first = length;
-    mode |= kDescend;
+    motion.height = height - length;
+    motion.change = row.slope;
+    motion.interval += row.slope;
+    motion.mode |= kDescend;
   } else {
     uint16_t climb = 0;
-    if (motion.height < motion.goal) {
-      if (motion.rung == row.levels) {
-        row = readRow(slideRamp + ++motion.row);
-        motion.rung = 0;
-        length = 1 << row.shift;
-      }
-      climb = motion.goal - motion.height;
-      if (slack / 2 < climb) climb = slack / 2;
-      climb >>= row.shift;
+    if (height < goal) {
+      climb = goal - height;
+      if (room / 2 < climb) climb = room / 2;
+      climb = levelsIn(climb, row);
     }
     if (climb) {
-      levels = row.levels - motion.rung;
-      if (climb < levels) levels = climb;
-      --levels;
-      change = -row.slope;
-      first = length;
-      mode |= kClimb;
+      levels = row.levels - rung - 1;
+      if (climb <= levels) levels = climb - 1;
+      motion.change = -row.slope;
+      motion.mode |= kClimb;
     } else {
-      if (motion.height == motion.goal) interval = motion.cruise;
-      const uint16_t others = (slack < 256UL * kFlatSteps ? slack : 256UL * kFlatSteps) - 1;
+      if (height == goal) motion.interval = motion.cruise;
+      const uint16_t others = room - 1;
       length = kFlatSteps;
       first = others % kFlatSteps + 1;
-      levels = others / kFlatSteps;
+      levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
     }
   }
-  if (interval >= kLappedInterval) {  // then each step is a boundary
+  if (motion.interval >= kLappedInterval) {  // then each step is a boundary
     levels = 0;
     first = 1;
   }
-  motion.mode = mode;
-  motion.interval = interval;
-  motion.change = change;
+  motion.rung = rung;
   motion.length = length;
   motion.levels = motion.planned = levels;
   GPIOR1 = first;
-  motion.rest = left - first - static_cast<uint16_t>(levels * length);
+  motion.rest -= static_cast<uint16_t>(levels * length) + first;
 }
 
 // Begins a way from rest to the destination; tells whether there is one.
@@ -489,6 +527,7 @@ SHARED bool slideSetOut() {
   }
   motion.row = 0;
   motion.rung = 0;
+  motion.rungs = 1;
   motion.height = 0;
   motion.pace = kSlideFirstInterval;
   slideDecide();
@@ -680,7 +719,7 @@ static uint16_t slideHeightFor(uint32_t interval) {
     for (uint8_t level = 0; level < row.levels; ++level) {
       pace -= row.slope;
       if (pace < interval) return height;
-      height += 1 << row.shift;
+      height += row.steps;
     }
   }
   return height;

@@ -41,6 +41,7 @@ def plan(spec: Trapezoid, motor: Motor, f_cpu_hz: int, faults: Faults) -> Motion
         forms=_FORMS,
         ladder=ladder,
         queue=spec.queue,
+        wish_field=("motion", "cruise_speed"),
         cruise_interval_256=int(f_cpu_hz * FRACTION / spec.cruise_speed),
     )
 

@@ -32,7 +32,7 @@ class Trapezoid(KindModel):
         if self.start_speed is not None and self.start_speed >= self.cruise_speed:
             raise ValueError(
                 f"start_speed {float(self.start_speed):g} is not below cruise_speed "
-                f"{float(self.cruise_speed):g}; lower it, or leave it out to begin from 0"
+                f"{float(self.cruise_speed):g}; make it lower, or leave it out to begin from 0"
             )
         return self
 
