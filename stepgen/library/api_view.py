@@ -58,8 +58,7 @@ _STATUS_BITS = (
     _Name("MOTOR_STAT_SPIN_FIXED", 0x40, "running at a speed that stays"),
     _Name("MOTOR_STAT_MISSED", 0x80, "a step came too late; a start clears it"),
 )
-CALL_CYCLES = 1000
-"""The longest that an interrupt of the sketch can take that does nothing but call a function."""
+_CALL_CYCLES = {"motor": 1000, "axis": 1200}
 
 _CODES = (
     _Name("MOTOR_ERROR_TOO_FAST", -1, "below MOTOR_MIN_TOP"),
@@ -153,6 +152,14 @@ def init_name(motor: MotorPlan) -> str:
     Return the function that prepares *motor*.
     """
     return f"{motor.name}{_AXIS_FUNCTIONS[0] if motor.motion.ladder else _FUNCTIONS[0]}"
+
+
+def call_cycles(plan: Plan) -> int:
+    """
+    Return the longest that an interrupt of the sketch can take that does nothing but call a
+    function of *plan*.
+    """
+    return max(_CALL_CYCLES[name] for name in api_names(plan))
 
 
 def api_names(plan: Plan) -> tuple[str, ...]:

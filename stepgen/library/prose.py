@@ -5,7 +5,7 @@ Sentences about a plan, for comments and documents: what is wired where, and who
 from collections.abc import Iterator, Mapping
 
 from stepgen.devices import Board
-from stepgen.library.api_view import CALL_CYCLES, dump_name
+from stepgen.library.api_view import call_cycles, dump_name
 from stepgen.library.sharing import Need, sharing_rules
 from stepgen.library.text import comment_lines, frequency, listed
 from stepgen.plan.model import MotorPlan, Plan
@@ -116,7 +116,7 @@ def calls_comment(plan: Plan) -> tuple[str, ...]:
     return comment_lines(
         "Every function may be called from setup() and loop(), from a callback, and from an "
         "interrupt of the sketch, also in the middle of another call. Step interrupts wait for an "
-        f"interrupt of the sketch: a call takes at most {CALL_CYCLES} clocks there{callbacks}"
+        f"interrupt of the sketch: a call takes at most {call_cycles(plan)} clocks there{callbacks}"
         f"{searches}, and counts as a stretch with interrupts off.{prints}"
     )
 

@@ -73,6 +73,7 @@ class LibraryView:
     releases: bool
     dumps: bool
     api_names: tuple[str, ...]
+    has_channels: bool
     timing_names: tuple[str, ...]
     needs_comment: tuple[str, ...]
     motors: tuple[MotorView, ...]
@@ -124,6 +125,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         releases=any(motor.releases for motor in motors),
         dumps=any(motor.motion.dumps for motor in plan.motors),
         api_names=api_names(plan),
+        has_channels=any(motor.timing.channel for motor in plan.motors),
         timing_names=tuple(sorted({motor.timer.shared_by for motor in motors})),
         needs_comment=needs_comment(plan),
         motors=motors,

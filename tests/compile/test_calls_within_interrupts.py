@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from stepgen import api
-from stepgen.library.api_view import CALL_CYCLES, function_names
+from stepgen.library.api_view import call_cycles, function_names
 from stepgen.library.render import render_library
 from stepgen.plan.model import Plan
 from stepgen.verify.bounds.worst_case import WorstCase
@@ -16,10 +16,20 @@ from stepgen.verify.toolchain import Target, build, default_compiler
 SPECS = Path(__file__).parents[2] / "specs"
 STEMS = sorted(path.stem for path in SPECS.glob("*.yaml"))
 # What an interrupt does not call: constant expressions, what runs functions of the sketch, and
-# what prints.
-NOT_WITHIN = ("StepsForTurns", "StepsForMicrometres", "TimerUpdateCheck", "DebugDump", "debugDump")
+# what prints. The SetSpeed of an axis takes longer, as its header says.
+NOT_WITHIN = (
+    "Interval",
+    "StepsForTurns",
+    "StepsForMicrometres",
+    "TimerUpdateCheck",
+    "DebugDump",
+    "debugDump",
+)
 ARGUMENTS = {
     "SetSpeed": "a, b, c",
+    "MoveTo": "b",
+    "Move": "b",
+    "SetCurrentPosition": "b",
     "TimerCalcPerSecond": "a",
     "TimerCalcNanometresPerSecond": "b",
     "CallBackPositionReached": "nullptr",
@@ -32,9 +42,10 @@ def calls(plan: Plan) -> list[str]:
     Return a call of each function, with arguments that the compiler does not know.
     """
     changing = {motor.name for motor in plan.motors if motor.motion.changes_speed}
+    searching = {f"{motor.name}SetSpeed" for motor in plan.motors if motor.motion.ladder}
     found = []
     for name in function_names(plan):
-        if name.endswith(NOT_WITHIN):
+        if name.endswith(NOT_WITHIN) or name in searching:
             continue
         arguments = next((args for end, args in ARGUMENTS.items() if name.endswith(end)), "")
         if name.endswith("SetSpeed") and name.removesuffix("SetSpeed") in changing:
@@ -74,4 +85,4 @@ def test_a_call_within_an_interrupt_is_as_short_as_stated(stem: str, tmp_path: P
     made = build(sources, [tmp_path / "src"], target, compiler, tmp_path / "build")
 
     worst = WorstCase(made.elf, plan.board.mcu, compiler)
-    assert worst.interrupt_cycles("TIMER0_COMPA_vect") <= CALL_CYCLES
+    assert worst.interrupt_cycles("TIMER0_COMPA_vect") <= call_cycles(plan)

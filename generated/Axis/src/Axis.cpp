@@ -43,6 +43,7 @@ constexpr uint8_t kTurning = 0x80;  // comes to rest first, and then goes to the
 
 constexpr uint16_t kLapTicks = 16384;  // a longer interval is divided into laps
 constexpr uint8_t kSoonTicks = 32;  // more than it takes from a look at the counter to a compare
+
 constexpr uint32_t kLappedInterval = 2UL * kLapTicks << 8;  // from here on; in 1/256 clocks
 
 // What is kept of the moves of a motor. Intervals are in 1/256 clocks.
@@ -265,7 +266,7 @@ void __vector_slide_boundary_late() {
   if (slidePassed()) ++slideMotion.missed;
 }
 
-// Timer 1 compare match A: one step, 67 cycles from the interrupt's response to RETI; at most 1077
+// Timer 1 compare match A: one step, 67 cycles from the interrupt's response to RETI; at most 1137
 // when it goes on in __vector_slide_boundary. STEP rises 17 cycles after the match (27 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port B and D and nothing else that the sketch can see. Behind each instruction stand its
@@ -452,15 +453,22 @@ SHARED void slideDecide() {
   if (slack > 256UL * kFlatSteps) slack = 256UL * kFlatSteps;
   const uint16_t room = slack;
   const bool descends = room == 0 || height > goal;
+  uint16_t way = 0;  // steps down or up
   uint8_t rung = motion.rung;
   if (descends) {
+    way = room ? height - goal : 0xFFFF;
     if (rung == 0) --motion.row;
-  } else if (rung == motion.rungs && height < goal) {
-    ++motion.row;
-    rung = 0;
+  } else if (height < goal) {
+    way = goal - height;
+    if (room / 2 < way) way = room / 2;
+    if (rung == motion.rungs) {
+      ++motion.row;
+      rung = 0;
+    }
   }
   const Row row = readRow(slideRamp + motion.row);
   motion.rungs = row.levels;
+  way = levelsIn(way, row);
   motion.interval = motion.pace;
   motion.change = 0;
   uint8_t length = row.steps;
@@ -469,33 +477,22 @@ SHARED void slideDecide() {
   if (descends) {
     if (rung == 0) rung = row.levels;
     levels = --rung;
-    if (room) {
-      const uint16_t above = levelsIn(height - goal, row) - 1;
-      if (above < levels) levels = above;
-    }
+    if (way <= levels) levels = way - 1;
     motion.height = height - length;
     motion.change = row.slope;
     motion.interval += row.slope;
     motion.mode |= kDescend;
+  } else if (way) {
+    levels = row.levels - rung - 1;
+    if (way <= levels) levels = way - 1;
+    motion.change = -row.slope;
+    motion.mode |= kClimb;
   } else {
-    uint16_t climb = 0;
-    if (height < goal) {
-      climb = goal - height;
-      if (room / 2 < climb) climb = room / 2;
-      climb = levelsIn(climb, row);
-    }
-    if (climb) {
-      levels = row.levels - rung - 1;
-      if (climb <= levels) levels = climb - 1;
-      motion.change = -row.slope;
-      motion.mode |= kClimb;
-    } else {
-      if (height == goal) motion.interval = motion.cruise;
-      const uint16_t others = room - 1;
-      length = kFlatSteps;
-      first = others % kFlatSteps + 1;
-      levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
-    }
+    if (height == goal) motion.interval = motion.cruise;
+    const uint16_t others = room - 1;
+    length = kFlatSteps;
+    first = others % kFlatSteps + 1;
+    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
   }
   if (motion.interval >= kLappedInterval) {  // then each step is a boundary
     levels = 0;
@@ -537,12 +534,12 @@ SHARED bool slideSetOut() {
 // Goes on to the destination from where a way has ended, or to the next one; tells whether there is
 // one.
 INLINE bool slideGoOn() {
-  if (slideSetOut()) return true;
-  if (!slideQueued) return false;
   auto &motion = near(slideMotion);
-  motion.destination = slideQueue[slideFirst];
-  slideFirst = slidePlace(1);
-  --slideQueued;
+  if (motion.destination == motion.end && slideQueued) {
+    motion.destination = slideQueue[slideFirst];
+    slideFirst = slidePlace(1);
+    --slideQueued;
+  }
   return slideSetOut();
 }
 
@@ -632,11 +629,10 @@ SHARED void slideLeave(uint32_t here, uint32_t steps) {
   motion.rest = steps - GPIOR1;
 }
 
-// Has the motor move to a destination: from rest, or in mid-way.
-SHARED void slideAim(uint32_t destination, uint8_t endless) {
+// Has the motor move from here to a destination: from rest, or in mid-way.
+SHARED void slideAim(uint32_t here, uint32_t destination, uint8_t endless) {
   auto &motion = near(slideMotion);
   slideQueued = 0;
-  const uint32_t here = slidePosition();
   if (motion.mode & kRunning) {
     motion.destination = destination;
     const bool climbs = slideCut();
@@ -671,24 +667,27 @@ SHARED void slideAim(uint32_t destination, uint8_t endless) {
 
 int8_t slideMoveTo(int32_t target) {
   const Masked masked;
-  slideAim(slideMotion.origin + target, 0);
+  slideAim(slidePosition(), slideMotion.origin + target, 0);
   return 0;
 }
 
 int8_t slideMove(int32_t steps) {
   const Masked masked;
-  slideAim(slidePosition() + steps, 0);
+  const uint32_t here = slidePosition();
+  slideAim(here, here + steps, 0);
   return 0;
 }
 
 void slideRunForward() {
   const Masked masked;
-  slideAim(slidePosition() + kFar, kEndless);
+  const uint32_t here = slidePosition();
+  slideAim(here, here + kFar, kEndless);
 }
 
 void slideRunBackward() {
   const Masked masked;
-  slideAim(slidePosition() - kFar, kEndless);
+  const uint32_t here = slidePosition();
+  slideAim(here, here - kFar, kEndless);
 }
 
 void slideStop() {
@@ -767,7 +766,7 @@ int8_t slideQueueMoveTo(int32_t target) {
   auto &motion = near(slideMotion);
   const uint32_t destination = motion.origin + target;
   if (!(motion.mode & kRunning)) {
-    slideAim(destination, 0);
+    slideAim(slidePosition(), destination, 0);
     return 0;
   }
   if (motion.mode & kEndless) return MOTOR_ERROR_RUNNING;

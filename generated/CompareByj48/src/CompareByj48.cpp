@@ -45,15 +45,15 @@ constexpr uint8_t kClock = 0x20;    // look if a moment has come; the interrupt'
 constexpr uint8_t kLimited = 0x40;  // a limit in milliseconds
 constexpr uint8_t kEnded = 0x80;    // at an end point, not just stopped
 
+constexpr uint16_t kLapTicks = 16384;  // a longer interval is divided into laps
+constexpr uint8_t kSoonTicks = 32;  // more than it takes from a look at the counter to a compare
+
 // An interval of a timer that runs through: its clocks; where these are 32768 or more, those until
 // the first lap, 16384 to 32767, and how many laps of 16384 clocks follow.
 struct Span {
   uint16_t ticks;
   uint16_t laps;
 };
-
-constexpr uint16_t kLapTicks = 16384;
-constexpr uint8_t kSoonTicks = 32;  // more than it takes from a look at the counter to a compare
 
 // The interval for a period in I/O clocks.
 INLINE Span chooseSpan(uint32_t period) {

@@ -43,15 +43,15 @@ constexpr uint8_t kReverse = 0x08;  // backward, also at rest
 constexpr uint8_t kRunning = 0x10;  // more steps will come
 constexpr uint8_t kLaps = 0x40;     // a millisecond limit ends after more laps of 16384 ms
 
+constexpr uint16_t kLapTicks = 16384;  // a longer interval is divided into laps
+constexpr uint8_t kSoonTicks = 32;  // more than it takes from a look at the counter to a compare
+
 // An interval of a timer that runs through: its clocks; where these are 32768 or more, those until
 // the first lap, 16384 to 32767, and how many laps of 16384 clocks follow.
 struct Span {
   uint16_t ticks;
   uint16_t laps;
 };
-
-constexpr uint16_t kLapTicks = 16384;
-constexpr uint8_t kSoonTicks = 32;  // more than it takes from a look at the counter to a compare
 
 // The interval for a period in I/O clocks.
 INLINE Span chooseSpan(uint32_t period) {
