@@ -120,7 +120,10 @@ def page_view(plan: Plan, spec_text: str, report: "Report | None") -> PageView:
 
 
 def _beside(plan: Plan) -> tuple[str, ...]:
-    warnings = (f"{warning.motor}: {warning.reason}" for warning in plan_warnings(plan))
+    warnings = (
+        f"{warning.motor}: {warning.reason}" if warning.motor else warning.reason
+        for warning in plan_warnings(plan)
+    )
     return tuple(map(_plain, (*takes(plan), *warnings)))
 
 

@@ -79,6 +79,7 @@ _SWITCH_FUNCTIONS = ("Hold", "Release")
 _MISSED_BITS = {"MOTOR_STAT_MISSED"}
 _MISSED_FUNCTIONS = ("ReadMissed",)
 _TIMED_FUNCTIONS = ("KeepAlive", "TimedOut")
+_WATCHDOG_FUNCTIONS = ("motorWatchdogStart", "motorWatchdogFeed", "motorWatchdogFired")
 _CHANGING_FUNCTIONS = ("TimerUpdateCheck", "CallBackPositionReached", "CallBackFault")
 _RANGE = ("MOTOR_MIN_TOP", "MOTOR_MAX_TOP")
 
@@ -109,6 +110,7 @@ def function_names(plan: Plan) -> tuple[str, ...]:
     Return all functions, those of the library first.
     """
     names = ["motorTimerGetIOclocksPerSecond", "motorTimerCalcPerSecond"]
+    names += _WATCHDOG_FUNCTIONS if plan.watchdog_ms is not None else ()
     for motor in plan.motors:
         parts: tuple[str, ...] = _FUNCTIONS
         parts += _MISSED_FUNCTIONS if tells_missed(motor) else ()

@@ -5,6 +5,7 @@
 
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
+#include <simavr/sim_io.h>
 
 #include "harness.h"
 #include "mcus.h"
@@ -28,6 +29,7 @@ typedef enum {
     ROLE_DATA,   /* UDRn */
     ROLE_STATUS, /* UCSRnA */
     ROLE_CONTROL, /* UCSRnB */
+    ROLE_WATCHDOG,
 } role;
 
 typedef struct {
@@ -75,6 +77,12 @@ struct machine {
 
     avr_int_vector_t *frame_begins; /* the interrupt of USB; NULL without USB */
 
+    avr_io_t dog;
+    uint64_t dog_fed;        /* the watchdog's counter began at 0 */
+    uint64_t dog_open_until; /* its timed sequence goes on */
+    int reset_due;
+
+    uint64_t until; /* where the run ends */
     int stop, wanted_mark, marked;
     int fine, was_enabled;
     int silent; /* record nothing */
@@ -86,6 +94,9 @@ event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source
 
 /* Stop the run with an error, once: the first one counts. */
 void machine_fail(machine *m, const char *format, ...);
+
+/* chip.c: what a reset by the watchdog makes of it, between two instructions. */
+void machine_reset(machine *m);
 
 /* An interrupt may have become pending: look after the current instruction. */
 void machine_attend(machine *m);
@@ -108,5 +119,10 @@ void serial_settle(machine *m);
 
 /* usb.c */
 void usb_install(machine *m);
+
+/* watchdog.c */
+enum { WDRF_MASK = 1 << 3 }; /* of MCUSR */
+void watchdog_install(machine *m);
+void watchdog_write(machine *m, uint8_t value, uint64_t edge);
 
 #endif
