@@ -113,8 +113,8 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses) {
 // What MCUSR held when the program began. The start of the program does not clear it.
 static uint8_t resetCauses __attribute__((section(".noinit")));
 
-// Runs before RAM is cleared, long before setup(): after a reset by the watchdog it is still on, with
-// its shortest time, and cannot be switched off while WDRF is set.
+// Runs before RAM is cleared, long before setup(): after its own reset the watchdog is still on,
+// with its shortest time, and cannot be switched off while WDRF is set.
 extern "C" void motorWatchdogBegin() __attribute__((naked, used, section(".init3")));
 void motorWatchdogBegin() {
   resetCauses = MCUSR;
