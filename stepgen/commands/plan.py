@@ -91,6 +91,8 @@ def _library_rows(decided: Plan) -> Iterable[Row]:
     yield ("library", f"{decided.library.name} {decided.library.version}")
     yield ("board", f"{board.title}: {board.mcu.title} at {clock_hz / 1e6:g} MHz")
     yield ("uses", ", ".join(decided.uses) or "no other library")
+    watchdog = decided.watchdog_ms
+    yield ("watchdog", "none" if watchdog is None else f"{watchdog} ms")
     yield ("shortest period", _period(decided.minimum_period_cycles, clock_hz))
     yield ("longest period", _period(decided.largest_period_cycles, clock_hz))
 

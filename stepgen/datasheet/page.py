@@ -111,7 +111,9 @@ def _beside(plan: Plan) -> tuple[str, ...]:
     under: dict[str, list[str]] = {}
     for warning in plan_warnings(plan):
         under.setdefault(warning.reason, []).append(warning.motor)
-    warnings = (f"{listed(motors)}: {reason}" for reason, motors in under.items())
+    warnings = (
+        f"{listed(motors)}: {reason}" if all(motors) else reason for reason, motors in under.items()
+    )
     return tuple(map(_plain, (*takes(plan), *warnings)))
 
 

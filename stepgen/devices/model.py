@@ -308,6 +308,8 @@ class Board:
         core_define: What the core defines for it, such as ``ARDUINO_AVR_UNO``.
         pins: All header pins that are port bits, by number.
         analog_inputs: Labels of header pins that only analogRead() can use: they are no port bits.
+        may_reset_for_ever: Whether a boot loader that the core has for it leaves the watchdog on
+            after a reset by it, and so never comes to the sketch.
     """
 
     name: str
@@ -319,6 +321,7 @@ class Board:
     core_define: str
     pins: tuple[Pin, ...]
     analog_inputs: tuple[str, ...] = ()
+    may_reset_for_ever: bool = False
 
     def find_pin(self, text: str) -> Pin | None:
         """

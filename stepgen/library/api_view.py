@@ -88,6 +88,7 @@ _SWITCH_FUNCTIONS = ("Hold", "Release")
 _MISSED_BITS = {"MOTOR_STAT_MISSED"}
 _MISSED_FUNCTIONS = ("ReadMissed",)
 _TIMED_FUNCTIONS = ("KeepAlive", "TimedOut")
+_WATCHDOG_FUNCTIONS = ("motorWatchdogStart", "motorWatchdogFeed", "motorWatchdogFired")
 _CHANGING_FUNCTIONS = ("TimerUpdateCheck", "CallBackPositionReached", "CallBackFault")
 _API_FUNCTIONS = {
     "motor": ("motorTimerGetIOclocksPerSecond", "motorTimerCalcPerSecond"),
@@ -122,6 +123,7 @@ def function_names(plan: Plan) -> tuple[str, ...]:
     Return all functions, those of the library first.
     """
     names = [name for api in api_names(plan) for name in _API_FUNCTIONS[api]]
+    names += _WATCHDOG_FUNCTIONS if plan.watchdog_ms is not None else ()
     for motor in plan.motors:
         names += [f"{motor.name}{part}" for part in _parts(motor)]
         names += [dump_name(motor)] if motor.motion.dumps else []
@@ -156,8 +158,7 @@ def init_name(motor: MotorPlan) -> str:
 
 def call_cycles(plan: Plan) -> int:
     """
-    Return the longest that an interrupt of the sketch can take that does nothing but call a
-    function of *plan*.
+    Return the longest that an interrupt of the sketch can take that does nothing but one call.
     """
     return max(_CALL_CYCLES[name] for name in api_names(plan))
 

@@ -91,21 +91,12 @@ class ConsoleRow:
 
 
 @dataclass(frozen=True)
-class KeptAlive:
-    """
-    A motor with a command time-out, which the loop has to keep alive, and why.
-    """
-
-    name: str
-    comment: str
-
-
-@dataclass(frozen=True)
 class ExamplesView:
     """
     All examples of a library, and what their templates need.
 
-    *absent* says, a line each, which one is not there and why.
+    *absent* says, a line each, which one is not there and why. *guarded* are the last lines of
+    setup(), *kept_alive* the first ones of loop().
     """
 
     sketches: tuple[Example, ...]
@@ -122,7 +113,8 @@ class ExamplesView:
     coils: tuple[Coils, ...]
     neighbours: tuple[Neighbour, ...]
     together_comment: tuple[str, ...]
-    kept_alive: tuple[KeptAlive, ...]
+    guarded: tuple[str, ...]
+    kept_alive: tuple[str, ...]
 
 
 def examples_view(plan: Plan) -> ExamplesView:
@@ -169,15 +161,36 @@ def examples_view(plan: Plan) -> ExamplesView:
         ramped_names=listed(list(ramped)) if ramped else "",
         coils=coils,
         neighbours=beside,
-        kept_alive=tuple(
-            KeptAlive(motor.name, f"or it stops after {motor.command_timeout_ms} ms")
-            for motor in plan.motors
-            if motor.command_timeout_ms is not None
-        ),
+        guarded=_guarded(plan),
+        kept_alive=_kept_alive(plan),
         together_comment=comment_lines(
             f"{names} beside {beside_names}, which the spec names in `uses`: ten times a second "
             f"the sketch does something small with {'each' if beside[1:] else 'it'}. "
             f"{' '.join(left_out)}"
+        ),
+    )
+
+
+def _guarded(plan: Plan) -> tuple[str, ...]:
+    """
+    Return what comes last in setup().
+    """
+    if plan.watchdog_ms is None:
+        return ()
+    return ("motorWatchdogStart();  // from here on loop() has to feed it",)
+
+
+def _kept_alive(plan: Plan) -> tuple[str, ...]:
+    """
+    Return what loop() does first so that the watchdog and the command time-outs do nothing.
+    """
+    fed = f"motorWatchdogFeed();  // or the chip resets after {plan.watchdog_ms} ms"
+    return (
+        *((fed,) if plan.watchdog_ms is not None else ()),
+        *(
+            f"{motor.name}KeepAlive();  // or it stops after {motor.command_timeout_ms} ms"
+            for motor in plan.motors
+            if motor.command_timeout_ms is not None
         ),
     )
 

@@ -121,5 +121,6 @@ def _partials(made: Environment, view: LibraryView) -> dict[str, object]:
         "timings": modules("timings", timings),
         "motions": modules("motions", {motor.motion_name for motor in view.motors}),
         "timeouts": modules("timeouts", {motor.timeout_name for motor in view.motors}),
+        "watchdogs": modules("watchdogs", {view.watchdog_name}),
         "others": modules("others", {other.partial for other in view.examples.neighbours}),
     }

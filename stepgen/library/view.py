@@ -21,6 +21,7 @@ from stepgen.library.prose import calls_comment, paragraph, takes, title
 from stepgen.library.rates_view import HeldRow, held_rows, lateness, speeds
 from stepgen.library.sharing import needs_comment
 from stepgen.library.text import c_comment, frequency
+from stepgen.library.watchdog_view import Watchdog, watchdog_view
 from stepgen.plan.model import Plan
 
 
@@ -75,6 +76,8 @@ class LibraryView:
     api_names: tuple[str, ...]
     has_channels: bool
     timing_names: tuple[str, ...]
+    watchdog_name: str
+    watchdog: Watchdog | None
     needs_comment: tuple[str, ...]
     motors: tuple[MotorView, ...]
     examples: ExamplesView
@@ -127,6 +130,8 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         api_names=api_names(plan),
         has_channels=any(motor.timing.channel for motor in plan.motors),
         timing_names=tuple(sorted({motor.timer.shared_by for motor in motors})),
+        watchdog_name="none" if plan.watchdog_ms is None else "chip",
+        watchdog=watchdog_view(plan),
         needs_comment=needs_comment(plan),
         motors=motors,
         examples=examples_view(plan),

@@ -268,6 +268,7 @@ class Plan:
         uses: The other libraries of the sketch.
         rates: For each motor its highest rates, the last one beside all that is named.
         held_off: How long the sketch may have interrupts off at some rates, fastest last.
+        watchdog_ms: The period of the watchdog that the library has, or None.
     """
 
     library: Library
@@ -280,3 +281,4 @@ class Plan:
     uses: tuple[str, ...]
     rates: Mapping[str, tuple[RateLimit, ...]]
     held_off: tuple[HeldOff, ...]
+    watchdog_ms: int | None = None

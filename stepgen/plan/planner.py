@@ -79,6 +79,7 @@ def make_plan(loaded: LoadedSpec) -> Plan:
         uses=spec.uses,
         rates=rates,
         held_off=held_off(everything(alone, uses.values()), minimum),
+        watchdog_ms=spec.watchdog_ms,
     )
 
 

@@ -14,6 +14,9 @@ from stepgen.plan.wires import Wire
 _WAY_IN_CYCLES = 3 + 4 + 4 + 1
 _RISE_CYCLES = 2  # SBI
 _FAR_CYCLES = 6  # load, change and store, twice, against SBI and CBI
+# Of a call that waits before it writes DIR, which keeps more in registers; DIR and ENABLE beyond
+# SBI and CBI are in it.
+_HOLD_CYCLES = 28
 
 
 @dataclass(frozen=True)
@@ -192,9 +195,10 @@ class Pulse:
         """
         far = 0 if self.is_near or self.toggles else _FAR_CYCLES
         pulse = self.cycles.high + self.low_wait_cycles + far
+        hold = self.hold_wait_cycles and self.hold_wait_cycles + _HOLD_CYCLES
         return HandlerCycles(
             longest=151 + pulse,
-            masked=14 + self.hold_wait_cycles + self.setup_wait_cycles,
+            masked=14 + hold + self.setup_wait_cycles,
             to_clock=75,
             to_clock_thinking=94 + pulse,
         )

@@ -21,7 +21,7 @@ _ALSO = {"Serial": ", and uploading may be disturbed"}
 @dataclass(frozen=True)
 class PlanWarning:
     """
-    Something of a plan that may surprise, with the name of the motor that it comes from.
+    Something of a plan that may surprise, with the name of the motor that it comes from, or "".
     """
 
     motor: str
@@ -29,18 +29,19 @@ class PlanWarning:
 
     def __str__(self) -> str:
         """
-        Return the warning as one line, beginning with the motor.
+        Return the warning as one line, beginning with the motor if it comes from one.
         """
-        return f"motor {self.motor}: {self.reason}"
+        return f"motor {self.motor}: {self.reason}" if self.motor else self.reason
 
 
 def plan_warnings(plan: Plan) -> tuple[PlanWarning, ...]:
     """
     Return what the motors of *plan* keep from libraries and functions that it does not name.
 
-    In the order of the motors; of each motor first its timer, then its pins.
+    In the order of the motors; of each motor first its timer, then its pins. Before them comes what
+    a boot loader makes of the watchdog.
     """
-    return tuple(
+    of_motors = tuple(
         PlanWarning(motor.name, reason)
         for motor in plan.motors
         for reason in (
@@ -50,6 +51,19 @@ def plan_warnings(plan: Plan) -> tuple[PlanWarning, ...]:
             *_unbound_reasons(motor, plan),
         )
     )
+    return (*(PlanWarning("", reason) for reason in _watchdog_reasons(plan)), *of_motors)
+
+
+def _watchdog_reasons(plan: Plan) -> Iterable[str]:
+    """
+    Yield what a boot loader makes of a reset by the watchdog.
+    """
+    if plan.watchdog_ms is not None and plan.board.may_reset_for_ever:
+        yield (
+            "watchdog_ms: the boot loader ATmegaBOOT, which a board of this kind may have, leaves "
+            "the watchdog on after its reset, and is reset again and again until the power is "
+            "switched off: the motors stay off, but the sketch does not come back; Optiboot does"
+        )
 
 
 def _unbound_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:

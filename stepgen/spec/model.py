@@ -19,12 +19,14 @@ from stepgen.spec.drives import Drive
 from stepgen.spec.motions import Motion
 from stepgen.spec.timings import Timing
 from stepgen.spec.turns import Ratio, Steps, StepsPerMm
+from stepgen.spec.watchdog import WatchdogMs
 
 _LIBRARY_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _MOTOR_NAME = re.compile(r"[a-z][A-Za-z0-9]{0,30}")
 # What the helpers of a library begin with: millisCount(), checkSpeed(), enablesNeeded.
 _HELPER_PREFIXES = frozenset(
-    {"millis", "check", "choose", "print", "debug", "enables", "motorTimer", "timer0"}
+    {"millis", "check", "choose", "print", "debug", "enables", "timer0"}
+    | {"motorTimer", "motorWatchdog"}
 )
 # Headers of the Arduino core, of libraries that come with it or with the IDE, and of the C library
 # and the compiler (a library stdint would take the place of <stdint.h>), and names that are no
@@ -209,6 +211,8 @@ class Spec(SpecModel):
     """The motors by name; a name is a lower-case letter and up to 30 letters or digits."""
     uses: Annotated[tuple[str, ...], Field(strict=False)] = ()
     """What else the sketch uses of the chip, such as `Servo`, `Serial` or `analogWrite D5`."""
+    watchdog_ms: WatchdogMs | None = None
+    """How long the sketch may be silent before the watchdog resets the chip; else for ever."""
 
     @field_validator("motors")
     @classmethod

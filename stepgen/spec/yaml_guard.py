@@ -4,6 +4,7 @@ What YAML can do and a spec never needs: found in its events, before anything is
 
 import re
 from collections.abc import Iterator
+from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.events import (
@@ -15,9 +16,11 @@ from ruamel.yaml.events import (
     NodeEvent,
     ScalarEvent,
 )
+from ruamel.yaml.scanner import RoundTripScanner
 
 MAXIMUM_DEPTH = 12
 MAXIMUM_NODES = 2000
+_TOO_DEEP = "is nested too deeply for a spec; remove a level"
 _LONGEST_NUMBER = 24  # digits and signs; 2**64 has 20
 
 # Characters that nobody sees, or that make text look like other text: control characters, marks
@@ -32,6 +35,30 @@ _LEADING_ZERO = re.compile(r"[-+]?0[0-9_]*[0-9]")
 
 Place = tuple[int, int]
 """Line and column, both counted from 0."""
+
+
+class _TooDeepError(Exception):
+    """
+    Brackets within brackets, more of them than a spec has levels: how many follow decides nothing.
+    """
+
+
+class _ShallowScanner(RoundTripScanner):
+    """
+    Ruamel's, but it gives up at too many open brackets.
+
+    Each may begin a key, so that it reads 1024 characters on before it tells of the first one, and
+    compares each with all before it: a million times, for nothing.
+    """
+
+    def fetch_flow_collection_start(self, TokenClass: Any, to_push: str) -> None:  # noqa: ANN401, N803 - ruamel's
+        """
+        Note a bracket that opens.
+        """
+        if len(self.flow_context) == MAXIMUM_DEPTH:
+            mark = self.reader.get_mark()
+            raise _TooDeepError(mark.line, mark.column)
+        super().fetch_flow_collection_start(TokenClass, to_push)
 
 
 def hidden_character(text: str) -> str:
@@ -56,8 +83,18 @@ def unwanted(text: str) -> tuple[Place, str] | None:
     Raises:
         YAMLError: *text* is no YAML.
     """
+    try:
+        return _first_unwanted(text)
+    except _TooDeepError as error:
+        line, column = error.args
+        return (line, column), _TOO_DEEP
+
+
+def _first_unwanted(text: str) -> tuple[Place, str] | None:
     documents = depth = nodes = 0
-    for event in YAML(typ="rt", pure=True).parse(text):
+    yaml = YAML(typ="rt", pure=True)
+    yaml.Scanner = _ShallowScanner
+    for event in yaml.parse(text):
         place = (event.start_mark.line, event.start_mark.column)
         documents += isinstance(event, DocumentStartEvent)
         depth += isinstance(event, CollectionStartEvent)
@@ -66,7 +103,7 @@ def unwanted(text: str) -> tuple[Place, str] | None:
         if documents > 1:
             return place, "begins another document; a file holds one spec, so split it"
         if depth > MAXIMUM_DEPTH:
-            return place, "is nested too deeply for a spec; remove a level"
+            return place, _TOO_DEEP
         if nodes > MAXIMUM_NODES:
             return place, f"is too much: a spec has at most {MAXIMUM_NODES} values; remove some"
         reason = next(_reasons(event), "")

@@ -66,6 +66,7 @@ class CallKind(IntEnum):
     as ``EnableOutputs`` and ``DisableOutputs``. SET_PACE is its ``SetSpeed``, in 1/256 clock.
 
     HOLD_UP keeps interrupts off for four cycles *top* times, 65535 at most, and a few more.
+    WATCHDOG is one of the library's functions about it, by *control*: a `Watchdog`.
     DIVIDE_CLOCK sets CLKPR: the clock is divided by 2 to the power of *control*. The last two
     give their result as the position.
     """
@@ -78,6 +79,7 @@ class CallKind(IntEnum):
     UPDATE_CHECK = 6
     CALLBACKS = 7
     KEEP_ALIVE = 8
+    WATCHDOG = 9
     HOLD_UP = 12
     DIVIDE_CLOCK = 13
     TOP_PER_SECOND = 14
@@ -93,11 +95,23 @@ class CallKind(IntEnum):
     SET_POSITION = 24
 
 
+class Watchdog(IntEnum):
+    """
+    Which function of the watchdog a call is of; FIRED gives its result.
+    """
+
+    START = 0
+    FEED = 1
+    FIRED = 2
+
+
 SWITCHING = frozenset({CallKind.HOLD, CallKind.RELEASE})
 """The calls that a motor does not have where nothing can switch its coils."""
 
 OF_NO_MOTOR = frozenset(
-    kind for kind in CallKind if CallKind.HOLD_UP <= kind <= CallKind.CLOCKS_PER_SECOND
+    kind
+    for kind in CallKind
+    if CallKind.HOLD_UP <= kind <= CallKind.CLOCKS_PER_SECOND or kind is CallKind.WATCHDOG
 )
 """The calls of the library as a whole, of avr-libc or of the sketch."""
 
@@ -266,6 +280,13 @@ class Bench:
     def _answer(self, call: Call, begin: int, end: int) -> Answer:
         seen = _MAILBOX.unpack(self.machine.read_ram(self._mailbox, _MAILBOX.size))
         return Answer(call, begin, end, *seen[_RESULT:_WITHIN], *seen[_STEPS + 1 :])
+
+    def come_back(self, limit_cycles: int) -> bool:
+        """
+        Let the chip run until its sketch has come out of setup() again, after a reset.
+        """
+        self._loop = Loop.SLEEP
+        return self.machine.run_until_mark(_MARK_READY, limit_cycles=limit_cycles)
 
     def events(self) -> Events:
         """

@@ -35,6 +35,8 @@ class Kind(IntEnum):
     """The main program set the I flag (fine recording only)."""
     RAISE = 9
     """An enabled flag of a timer but 0 came: vector, 1 if it was still raised (lost)."""
+    RESET = 10
+    """The watchdog reset the chip: address of MCUSR, what it holds from then on."""
 
 
 Event: TypeAlias = np.void

@@ -103,6 +103,7 @@ class Simulator:
             right.
         tells_overruns: Whether a sketch that reads a counter gets it to the very cycle, on which
             it depends whether a step counts as missed.
+        tells_resets: Whether it records the watchdog's reset, and what the pins do then.
     """
 
     name: str
@@ -114,6 +115,7 @@ class Simulator:
     longest_scenario_cycles: int | None = None
     corrected: frozenset[str] = frozenset()
     tells_overruns: bool = False
+    tells_resets: bool = False
 
     @property
     def version(self) -> str:
@@ -144,6 +146,8 @@ _YASIMAVR_CYCLES = 3_200_000
 # Interrupts that a mask holds back, and when they may come.
 _MASKING = {"sei-delay", "masked-flag"}
 _RESPONSES = {"response", "response-32u4", "response-1280", "response-2560", "wake-up"}
+# What the watchdog's reset leaves of the chip.
+_RESETS = {f"watchdog-reset{chip}" for chip in ("", "-32u4", "-1280", "-2560")}
 
 SIMAVR = Simulator(
     "simavr",
@@ -151,7 +155,8 @@ SIMAVR = Simulator(
     simavr.find_version,
     simavr.Machine,
     simavr.INSTALL,
-    # What simavr 1.6 itself was seen to do wrong; its timers 1 to 5 are replaced as a whole.
+    # What simavr 1.6 itself was seen to do wrong; its timers 1 to 5 and its watchdog are replaced
+    # as a whole.
     corrected=frozenset(
         {"double-buffer", "slow-step", "prescaler-phase", "count-kept", "count-zero-loads-nothing"}
         | {"late-compare-shows", "fast-pwm-icr-period", "ctc-icr-period", "ctc-wrap"}
@@ -165,10 +170,13 @@ SIMAVR = Simulator(
             "usb-banks",
             "usb-port",
         }
+        | {"watchdog-period", "watchdog-fed"}
+        | _RESETS
         | _MASKING
         | _RESPONSES
     ),
     tells_overruns=True,
+    tells_resets=True,
 )
 AVR8JS = Simulator(
     "avr8js",
@@ -182,9 +190,11 @@ AVR8JS = Simulator(
         | {"ctc-wrap", "compare-flag-edge", "timer2-compare"}
         | {"instruction-cycles", "instruction-cycles-32u4", "usb-frames"}
         | {"instruction-cycles-1280", "instruction-cycles-2560"}
+        | _RESETS
         | _MASKING
         | _RESPONSES
     ),
+    tells_resets=True,
 )
 YASIMAVR = Simulator(
     "yasimavr",

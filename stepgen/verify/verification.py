@@ -24,8 +24,10 @@ from stepgen.verify.simulators import SIMAVR, Simulator
 from stepgen.verify.timeout_scenarios import timeout_scenarios
 from stepgen.verify.toolchain import Compiler
 from stepgen.verify.update_scenarios import update_scenarios
+from stepgen.verify.watchdog_run import judge_watchdog, run_cycles
 
 _EXAMPLE = "the example sketch"
+_WATCHDOG = "the watchdog"
 _LONG_RUN_STEPS = 10_000
 
 Track = Callable[[Sequence[Scenario]], Iterable[Scenario]]
@@ -82,6 +84,9 @@ def verify_spec(
         findings = run_example(loaded, plan, firmware.example)
         report.check(_EXAMPLE, findings, "every step as the model says")
     judge_ramps(loaded, plan, report)
+    if plan.watchdog_ms is not None and _WATCHDOG not in report.left_out:
+        findings = judge_watchdog(loaded, plan, firmware.bench, simulator)
+        report.check(_WATCHDOG, findings, "a sketch that hangs is reset in time, and comes back")
     judge_worst_case(loaded, plan, firmware, compiler, report)
     return report
 
@@ -120,6 +125,11 @@ def _left_out(
             reasons[scenario.name] = f"{seconds:.3g} s of simulated time, {simulator.name} is slow"
     if longest is not None:
         reasons[_EXAMPLE] = f"{simulator.name} is slow"
+    if plan.watchdog_ms is not None:
+        if not simulator.tells_resets:
+            reasons[_WATCHDOG] = f"{simulator.name} does not tell what a reset does to the pins"
+        elif longest is not None and run_cycles(plan) > longest:
+            reasons[_WATCHDOG] = f"{simulator.name} is slow"
     return reasons
 
 

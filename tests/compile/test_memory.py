@@ -49,7 +49,7 @@ def _spec(board: Board, motors: Sequence[str]) -> str:
     """
     Return a spec of *motors*, as many as there are pins for, each with the longest table.
     """
-    lines = [f"library: Largest\nboard: {board.name}\nmotors:"]
+    lines = [f"library: Largest\nboard: {board.name}\nwatchdog_ms: 250\nmotors:"]
     for number, more in enumerate(motors):
         pins = board.pins[number :: len(motors)][:4]
         if len(pins) < len(_PATTERNS):

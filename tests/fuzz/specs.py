@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
 from stepgen.devices import DRIVERS, boards
+from stepgen.spec.watchdog import WATCHDOG_MS
 from stepgen.spec.yaml_guard import HIDDEN
 
 Data = dict[str, Any]
@@ -77,7 +78,10 @@ def specs(draw: st.DrawFn) -> Data:
     motors = {
         name: draw(motor(free if name != shield else [], timed=name != compared)) for name in names
     }
-    return {"library": draw(library()), "board": board.name, "motors": motors}
+    watchdog = draw(
+        st.fixed_dictionaries({}, optional={"watchdog_ms": st.sampled_from(WATCHDOG_MS)})
+    )
+    return {"library": draw(library()), "board": board.name, **watchdog, "motors": motors}
 
 
 @st.composite

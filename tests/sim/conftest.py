@@ -22,14 +22,17 @@ def machine_with(tmp_path_factory: pytest.TempPathFactory) -> MachineWith:
     """
     Return a function that puts a sketch, with the library of a spec, into a simulated chip.
 
+    The spec is the name of one of specs/, or a path.
+
     Other *templates* than stepgen's own show what a test is good for.
     """
 
-    def make(stem: str, sketch: str, templates: Path | None = None) -> Machine:
-        folder = tmp_path_factory.mktemp(stem)
-        plan = api.plan(SPECS / f"{stem}.yaml")
-        for path, text in {**render_library(plan, "", templates), "sketch.cpp": sketch}.items():
-            file = folder / path
+    def make(spec: str | Path, sketch: str, templates: Path | None = None) -> Machine:
+        path = SPECS / f"{spec}.yaml" if isinstance(spec, str) else spec
+        folder = tmp_path_factory.mktemp(path.stem)
+        plan = api.plan(path)
+        for name, text in {**render_library(plan, "", templates), "sketch.cpp": sketch}.items():
+            file = folder / name
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
         sources = [folder / "sketch.cpp", *(folder / "src").glob("*.cpp")]

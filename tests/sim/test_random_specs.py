@@ -21,6 +21,7 @@ from stepgen.verify.runner import run_scenario
 from stepgen.verify.scenarios import standard_scenarios
 from stepgen.verify.timeout_scenarios import timeout_scenarios
 from stepgen.verify.toolchain import default_compiler
+from stepgen.verify.watchdog_run import judge_watchdog
 from tests.fuzz.specs import specs, to_yaml
 
 FOUND = sorted((Path(__file__).parents[1] / "fuzz" / "found").iterdir())
@@ -49,6 +50,8 @@ def prove(path: Path) -> None:
             outcome = run_scenario(loaded, plan, firmware.bench, scenario)
             assert outcome.findings == (), (scenario.name, path.read_text(encoding="utf-8"))
             report.masked_cycles = max(report.masked_cycles, outcome.masked_cycles)
+    if plan.watchdog_ms is not None:
+        assert judge_watchdog(loaded, plan, firmware.bench) == (), path.read_text(encoding="utf-8")
     judge_worst_case(loaded, plan, firmware, compiler, report)
     assert report.passed, (report.checks, path.read_text(encoding="utf-8"))
 

@@ -12,12 +12,12 @@ from random import Random
 
 import pytest
 
-from stepgen.devices import PortBit
 from stepgen.library.render import template_dir
 from stepgen.verify.bench import Bench, Call, CallKind, Loop, is_axis
-from stepgen.verify.events import Events, Kind
+from stepgen.verify.events import Kind
+from stepgen.verify.resets import restless_wires
 from stepgen.verify.simavr import Machine
-from stepgen.verify.subject import Subject, subjects
+from stepgen.verify.subject import subjects
 from tests.sim.kinds import KINDS
 from tests.sim.shrinking import Library
 
@@ -40,40 +40,6 @@ def moving(library: Library, cycles: int) -> tuple[Bench, bytes]:
         bench.call(Call(CallKind.RUN_FORWARD, index) if is_axis(motor) else start)
     bench.wait(cycles)
     return bench, bench.machine.read_ram(mcu.ram_start, mcu.ram_bytes)
-
-
-def levels(library: Library, events: Events, bit: PortBit) -> list[bool | None]:
-    """
-    Return what *bit* showed since reset, in order: LOW, HIGH, or None where nothing drives it.
-
-    A pull-up drives nothing, but is HIGH where it is not the first thing that happens.
-    """
-    port = library.plan.board.mcu.port(bit.port)
-    held = {port.port.address: 0, port.ddr.address: 0}
-    shown: list[bool | None] = [None]
-    for event in events[events["kind"] == Kind.PORT]:
-        if int(event["source"]) not in held:
-            continue
-        held[int(event["source"])] = int(event["value"])
-        is_output = held[port.ddr.address] >> bit.bit & 1
-        level = bool(held[port.port.address] >> bit.bit & 1)
-        now = level if is_output or level else None
-        if now != shown[-1]:
-            shown.append(now)
-    return shown
-
-
-def at_rest(subject: Subject, bit: PortBit) -> list[tuple[bool, ...]]:
-    """
-    Return which levels *bit* may show after ShieldInit: no current, no pulse on STEP.
-    """
-    place = subject.drive.wires.index(bit)
-    off = subject.drive.coils_off
-    if off.care[place]:
-        return [(off.driven[place],)]
-    if subject.drive.pulse is not None and place == 0:
-        return [(False,)]
-    return [(False,), (True,)]
 
 
 @pytest.mark.parametrize("stem", KINDS)
@@ -118,12 +84,7 @@ def not_at_rest(library: Library, cycles: int) -> list[str]:
     fresh = Machine(library.elf, mcu=mcu.name, f_cpu_hz=library.plan.board.f_cpu_hz)
     fresh.write_ram(mcu.ram_start, ram)
     assert fresh.run_until_mark(_READY, limit_cycles=_SETUP_CYCLES)
-    events = fresh.events()
-    wrong = []
-    for subject in subjects(library.loaded, library.plan, library.elf):
-        for bit in subject.drive.wires:
-            first, *after = levels(library, events, bit)
-            if first is not None or tuple(after) not in at_rest(subject, bit):
-                wrong.append(f"{subject.name}: {bit.name} shows {first}, {after}")
+    motors = subjects(library.loaded, library.plan, library.elf)
+    wrong = list(restless_wires(motors, fresh.events(), mcu))
     fresh.close()
     return wrong

@@ -3,10 +3,13 @@ Boards: every pin agrees with the Arduino core or, for the serial ports, the dat
 """
 
 import re
+import subprocess
+from pathlib import Path
 
 import pytest
 
 from stepgen.devices import Board, Pin, boards, find_board
+from stepgen.verify.recipes import Target, platform_dir
 
 # RXDn and TXDn, from the datasheets' chapters "Alternate Port Functions".
 MEGA_SERIAL_PINS = {
@@ -28,6 +31,7 @@ SERIAL_PINS = {
     "atmega2560": MEGA_SERIAL_PINS,
 }
 NOT_AN_INTERRUPT = 255
+WRITES_WDTCSR = re.compile(r"\bsts\s+0x0060\b")
 
 
 def pins_with(board: Board, pattern: str) -> dict[str, Pin]:
@@ -251,3 +255,47 @@ def test_boards_are_found_by_name() -> None:
     assert {"mega", "uno"} <= {board.name for board in boards()}
     assert all(find_board(board.name) is board for board in boards())
     assert find_board("Uno") is None
+
+
+def boot_loaders(board: Board) -> list[Path]:
+    """
+    Return the boot loaders that the core has for the board's chip, as far as they are here.
+
+    Those of Caterina are not in Debian's core; its source clears MCUSR and calls wdt_disable().
+    """
+    target = Target.from_fqbn(board.fqbn)
+    lines = (platform_dir() / "boards.txt").read_text(encoding="utf-8").splitlines()
+    words = dict(line.split("=", 1) for line in lines if "=" in line)
+    clock = f"{board.f_cpu_hz}L"
+    found = []
+    for key, file in words.items():
+        if not (key.startswith(f"{target.board_id}.") and key.endswith(".bootloader.file")):
+            continue
+        menu = key.removesuffix(".bootloader.file")
+        mcu = words.get(f"{menu}.build.mcu", words.get(f"{target.board_id}.build.mcu"))
+        speed = words.get(f"{menu}.build.f_cpu", words.get(f"{target.board_id}.build.f_cpu"))
+        if (mcu, speed) == (board.mcu.name, clock):
+            found.append(platform_dir() / "bootloaders" / file)
+    return [path for path in found if path.is_file()]
+
+
+def test_boards_that_reset_for_ever_are_those_whose_boot_loader_leaves_the_watchdog(
+    board: Board,
+) -> None:
+    """
+    A boot loader that never writes to WDTCSR cannot switch the watchdog off (disassembled).
+    """
+    paths = boot_loaders(board)
+    family = "avr6" if board.mcu.name == "atmega2560" else "avr51"
+    listings = [
+        subprocess.run(
+            ["avr-objdump", "-m", family, "-D", str(path)],
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for path in paths
+    ]
+
+    assert paths or board.mcu.name == "atmega32u4"
+    assert board.may_reset_for_ever == any(not WRITES_WDTCSR.search(text) for text in listings)

@@ -292,3 +292,13 @@ def test_a_huge_file_and_deep_nesting_are_refused(faults: Faulty) -> None:
 
     assert large.reason.startswith("is larger than 64 KiB; ")
     assert deep.reason == "is nested too deeply for a spec; remove a level"
+
+
+def test_brackets_cost_nothing_beyond_the_deepest_level(faults: Faulty) -> None:
+    """
+    The thirteenth bracket is the fault, and none after it is read: each would cost as much as all.
+    """
+    (fault,) = faults("uses: " + "[" * 4000)
+
+    assert fault.place.endswith(f":1:{len('uses: ') + 13}")
+    assert fault.reason == "is nested too deeply for a spec; remove a level"

@@ -15,4 +15,5 @@ BOARD = Board(
     variant="standard",
     core_define="ARDUINO_AVR_DUEMILANOVE",
     pins=standard.PINS,
+    may_reset_for_ever=True,  # by ATmegaBOOT
 )

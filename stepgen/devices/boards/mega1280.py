@@ -15,4 +15,5 @@ BOARD = Board(
     variant="mega",
     core_define="ARDUINO_AVR_MEGA",
     pins=mega.PINS,
+    may_reset_for_ever=True,  # by ATmegaBOOT
 )

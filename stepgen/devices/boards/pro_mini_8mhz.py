@@ -16,4 +16,5 @@ BOARD = Board(
     core_define="ARDUINO_AVR_PRO",
     pins=standard.PINS,
     analog_inputs=standard.EIGHT_ANALOG_INPUTS,
+    may_reset_for_ever=True,  # by ATmegaBOOT
 )

@@ -24,12 +24,13 @@ _PIN_CHANGE_B = {"PCIE": 0, "PCICR": 0x68, "PCIFR": 0x3B, "PCMSK": 0x6B, "mask":
 
 def describe(mcu: Mcu) -> dict[str, Any]:
     """
-    Return ports, timers, first USART and USB of *mcu* as the driver hands them to avr8js.
+    Return ports, timers, first USART, USB and watchdog of *mcu* as the driver hands them to avr8js.
 
-    The ADC, SPI, TWI and the watchdog are left out: a program that waits for them hangs.
+    The ADC, SPI and TWI are left out: a program that waits for them hangs.
     """
     return {
         "flash_bytes": mcu.flash_bytes,
+        "ram_start": mcu.ram_start,
         "ram_end": mcu.ram_start + mcu.ram_bytes - 1,
         "response_cycles": mcu.response_cycles,
         "ports": list(_ports(mcu)),
@@ -40,6 +41,7 @@ def describe(mcu: Mcu) -> dict[str, Any]:
         ],
         "usart": _usart(mcu),
         "usb": _usb(mcu),
+        "watchdog": _address(mcu.vector("WDT_vect")),
     }
 
 

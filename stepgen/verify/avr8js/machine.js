@@ -12,9 +12,11 @@ const {
   raiseEdge,
 } = require("./timers.js");
 const { plugIn } = require("./usb.js");
+const { MCUSR, PORF, WDRF, addRawWatchdog, addWatchdog } = require("./watchdog.js");
 
 const KIND = {
   PORT: 1, REGISTER: 2, MARK: 3, ISR_ENTER: 4, ISR_EXIT: 5, UART: 6, MASKED: 7, UNMASKED: 8, RAISE: 9,
+  RESET: 10,
 };
 const EEDR = 0x40, SMCR = 0x53, SREG = 0x5f;
 const I_FLAG = 0x80, SLEEP_ENABLE = 1, SLEEP_MODE = 0x0e;
@@ -25,36 +27,64 @@ const LIBRARY_RESPONSE = 2;  // cycles that avrInterrupt() takes
 const WAKE_CYCLES = 4;
 const WORDS_PER_VECTOR = 2;
 const FIELDS = 6;
+const REGISTERS = 0x100;  // what avr8js puts before the RAM that it is asked for
 
 class Machine {
   constructor(job) {
     this.job = job;
     this.correct = job.correct;
-    const flash = new Uint16Array(job.flash_bytes / 2).fill(0xffff);
-    new Uint8Array(flash.buffer).set(Buffer.from(job.image, "base64"));
-    this.cpu = new CPU(flash, job.ram_end + 1 - 0x100);
+    this.flash = new Uint16Array(job.flash_bytes / 2).fill(0xffff);
+    new Uint8Array(this.flash.buffer).set(Buffer.from(job.image, "base64"));
     this.rows = [];
+    this.serial = [];
+    this.fine = false;
+    this.wantedMark = -1;
+    this.error = "";
+    this.start(new CPU(this.flash, job.ram_end + 1 - REGISTERS), PORF);
+  }
+
+  // The chip as a reset leaves it, around a fresh *cpu*; MCUSR holds *causes*.
+  start(cpu, causes) {
+    const { job } = this;
+    this.cpu = cpu;
     this.frames = [];
     this.raisedAt = {};
     this.enabledAt = {};
     this.unmaskedAt = 0;
-    this.fine = false;
     this.asleep = false;
-    this.wantedMark = -1;
-    this.error = "";
+    this.resetDue = false;
     this.timerOf = new Map();
-    this.ports = job.ports.map((port) => new AVRIOPort(this.cpu, port));
+    this.ports = job.ports.map((port) => new AVRIOPort(cpu, port));
     this.timers = job.timers.map((config) => this.addTimer(config));
-    this.usart = new AVRUSART(this.cpu, job.usart, job.f_cpu_hz);
+    this.usart = new AVRUSART(cpu, job.usart, job.f_cpu_hz);
     this.usart.onByteTransmit = (byte) => this.record(KIND.UART, this.writeEdge(), job.usart.UDR, byte);
-    if (job.usb && this.correct) plugIn(this.cpu, job.usb, job.f_cpu_hz, this.hookWrite.bind(this));
-    this.serial = [];
+    if (job.usb && this.correct) plugIn(cpu, job.usb, job.f_cpu_hz, this.hookWrite.bind(this));
     this.usart.onRxComplete = () => this.feedSerial();
+    const dog = { interrupt: job.watchdog, fCpuHz: job.f_cpu_hz };
+    if (this.correct) addWatchdog(cpu, dog, causes, () => { this.resetDue = true; });
+    else addRawWatchdog(cpu, dog);
     for (const port of job.ports) this.recordPort(port);
     this.hookWrite(EEDR, (value) => this.mark(value));
     for (const address of job.watch) this.watch(address);
-    const setFlag = this.cpu.setInterruptFlag.bind(this.cpu);
-    this.cpu.setInterruptFlag = (interrupt) => { this.noteRaise(interrupt); setFlag(interrupt); };
+    const setFlag = cpu.setInterruptFlag.bind(cpu);
+    cpu.setInterruptFlag = (interrupt) => { this.noteRaise(interrupt); setFlag(interrupt); };
+  }
+
+  // The watchdog's reset: RAM is as it was, and no pin is driven.
+  reset() {
+    const before = this.cpu, causes = before.data[MCUSR] | WDRF;
+    for (const { DDR, PORT } of this.job.ports) {
+      for (const address of [DDR, PORT]) {
+        if (before.data[address]) this.record(KIND.PORT, before.cycles, address, 0);
+      }
+    }
+    this.record(KIND.RESET, before.cycles, MCUSR, causes);
+    const after = new CPU(this.flash, before.sramBytes);
+    const { ram_start: ram } = this.job;
+    after.data.set(before.data.subarray(ram), ram);
+    after.cycles = before.cycles;
+    this.start(after, causes);
+    if (this.serial.length) this.feedSerial();
   }
 
   record(kind, cycle, source, value, since = 0, maskedUntil = 0) {
@@ -147,7 +177,7 @@ class Machine {
   interrupt() {
     const { cpu } = this;
     const address = cpu.nextInterrupt;
-    if (!(cpu.data[SREG] & I_FLAG) || address < 0) return;
+    if (this.resetDue || !(cpu.data[SREG] & I_FLAG) || address < 0) return;
     const vector = address / WORDS_PER_VECTOR;
     const since = this.raisedAt[vector] ?? cpu.cycles;
     const open = Math.max(since, this.unmaskedAt, this.enabledAt[vector] ?? 0);
@@ -210,19 +240,18 @@ class Machine {
   }
 
   run({ until, mark }) {
-    const { cpu } = this;
     this.wantedMark = mark;
     this.marked = false;
     const end = this.job.image_bytes / 2;
-    while (cpu.cycles < until && !this.marked && !this.error) {
-      if (this.asleep) {
-        this.doze(until);
-        continue;
-      }
-      this.step();
-      if (cpu.pc >= end) this.error = `left the program, at ${(cpu.pc * 2).toString(16)}`;
+    while (this.cpu.cycles < until && !this.marked && !this.error) {
+      if (this.asleep) this.doze(until);
+      else this.step();
+      if (this.resetDue) this.reset();
+      const { pc } = this.cpu;
+      if (pc >= end) this.error = `left the program, at ${(pc * 2).toString(16)}`;
     }
-    return { cycle: cpu.cycles, marked: this.marked, error: this.error, pc: cpu.pc * 2 };
+    const { cycles, pc } = this.cpu;
+    return { cycle: cycles, marked: this.marked, error: this.error, pc: pc * 2 };
   }
 
   setFine({ on }) {

@@ -2,10 +2,16 @@
 All points, in the order in which tables show them.
 """
 
-from stepgen.verify.conformance import cpu_points, register_points, timer_points, usb_points
+from stepgen.verify.conformance import (
+    cpu_points,
+    register_points,
+    timer_points,
+    usb_points,
+    watchdog_points,
+)
 from stepgen.verify.conformance.point import Point
 
-_MODULES = (timer_points, register_points, cpu_points, usb_points)
+_MODULES = (timer_points, register_points, cpu_points, usb_points, watchdog_points)
 
 
 def points() -> tuple[Point, ...]:

@@ -10,7 +10,8 @@ enum event_kind {
     EVENT_UART = 6,      /* source: UDRn, or UEDATX for USB; value: the byte sent */
     EVENT_MASKED = 7,    /* the main program cleared the I flag (fine recording only) */
     EVENT_UNMASKED = 8,  /* the main program set the I flag (fine recording only) */
-    EVENT_RAISE = 9      /* source: vector of a timer but 0; value: 1 if already raised */
+    EVENT_RAISE = 9,     /* source: vector of a timer but 0; value: 1 if already raised */
+    EVENT_RESET = 10     /* the watchdog; source: MCUSR; value: what it holds from then on */
 };
 
 typedef struct {

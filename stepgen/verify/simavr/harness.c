@@ -1,25 +1,13 @@
 #include "harness.h"
 
-#include <simavr/avr_extint.h>
 #include <simavr/avr_ioport.h>
 #include <simavr/sim_core.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "machine.h"
 
 enum { SE = 1, SM = 0x0E };
 static const avr_cycle_count_t UNLIMITED = 1000000;
-
-static void log_to_machine(avr_t *avr, const int level, const char *format, va_list arguments)
-{
-    machine *m = avr ? avr->custom.data : NULL;
-    if (!m || level > LOG_ERROR || m->error[0])
-        return;
-    vsnprintf(m->error, sizeof m->error, format, arguments);
-    m->stop = 1;
-}
 
 void machine_fail(machine *m, const char *format, ...)
 {
@@ -47,50 +35,6 @@ void machine_attend(machine *m)
 {
     if (m->avr->sreg[S_I] && !m->avr->interrupt_state)
         m->avr->interrupt_state = 1;
-}
-
-static void no_sleep(avr_t *avr, avr_cycle_count_t cycles)
-{
-    (void)avr, (void)cycles;
-}
-
-machine *machine_new(const char *mcu, uint32_t f_cpu_hz, const uint8_t *code, uint32_t size)
-{
-    avr_global_logger_set(log_to_machine);
-    const mcu_facts *facts = mcu_find(mcu);
-    avr_t *avr = facts ? avr_make_mcu_by_name(mcu) : NULL;
-    machine *m = avr ? calloc(1, sizeof *m) : NULL;
-    if (!m)
-        return NULL;
-    m->avr = avr;
-    m->facts = facts;
-    m->wanted_mark = -1;
-    avr->custom.data = m;
-    avr_init(avr);
-    avr->frequency = f_cpu_hz;
-    avr->sleep = no_sleep;
-    if (size > avr->flashend + 1)
-        machine_fail(m, "the program has %u bytes, the flash %u", size, avr->flashend + 1);
-    else
-        avr_loadcode(avr, (uint8_t *)code, size, 0);
-    avr->codeend = size;
-    m->lowest = m->lowest_ever = avr->ramend;
-    interrupts_install(m);
-    registers_install(m);
-    serial_install(m);
-    usb_install(m);
-    for (uint8_t number = 0; number < EXTINT_COUNT; number++)
-        avr_extint_set_strict_lvl_trig(avr, number, 0); /* else a low INTn pin is polled each cycle */
-    return m;
-}
-
-void machine_free(machine *m)
-{
-    avr_terminate(m->avr);
-    free(m->avr);
-    free(m->serial.bytes);
-    free(m->host.line.bytes);
-    free(m);
 }
 
 const char *machine_error(const machine *m)
@@ -154,26 +98,39 @@ static avr_cycle_count_t round_of(machine *m, avr_cycle_count_t wait)
     if (m->fine)
         note_masking(m, avr->cycle);
     avr_cycle_timer_process(avr);
-    interrupts_service(m);
+    if (!m->reset_due)
+        interrupts_service(m);
+    return avr_cycle_timer_process(avr);
+}
+
+/* Lets simavr run to where the run ends, or to its next event. */
+static avr_cycle_count_t prepare(machine *m)
+{
+    avr_t *avr = m->avr;
+    m->was_enabled = avr->sreg[S_I];
+    avr->run_cycle_limit = m->fine ? 1 : UNLIMITED;
+    if (!m->stop)
+        avr_cycle_timer_register(avr, m->until - avr->cycle, on_until, m);
     return avr_cycle_timer_process(avr);
 }
 
 int machine_run(machine *m, uint64_t until, int wanted_mark)
 {
-    avr_t *avr = m->avr;
     if (m->error[0])
         return RUN_FAILED;
-    m->stop = until <= avr->cycle;
+    m->stop = until <= m->avr->cycle;
     m->marked = 0;
     m->wanted_mark = wanted_mark;
-    m->was_enabled = avr->sreg[S_I];
-    avr->run_cycle_limit = m->fine ? 1 : UNLIMITED;
-    if (!m->stop)
-        avr_cycle_timer_register(avr, until - avr->cycle, on_until, m);
-    avr_cycle_count_t wait = avr_cycle_timer_process(avr);
-    while (!m->stop)
+    m->until = until;
+    avr_cycle_count_t wait = prepare(m);
+    while (!m->stop) {
         wait = round_of(m, wait);
-    avr_cycle_timer_cancel(avr, on_until, m);
+        if (m->reset_due) {
+            machine_reset(m);
+            wait = prepare(m);
+        }
+    }
+    avr_cycle_timer_cancel(m->avr, on_until, m);
     return m->error[0] ? RUN_FAILED : m->marked ? RUN_MARKED : RUN_REACHED;
 }
 

@@ -5,6 +5,7 @@
 
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
+#include <simavr/sim_io.h>
 
 #include "harness.h"
 #include "line.h"
@@ -31,6 +32,7 @@ typedef enum {
     ROLE_STATUS, /* UCSRnA */
     ROLE_CONTROL, /* UCSRnB */
     ROLE_USB,    /* of the USB device controller */
+    ROLE_WATCHDOG,
 } role;
 
 typedef struct {
@@ -79,6 +81,12 @@ struct machine {
     usb_device usb;
     usb_host host;
 
+    avr_io_t dog;
+    uint64_t dog_fed;        /* the watchdog's counter began at 0 */
+    uint64_t dog_open_until; /* its timed sequence goes on */
+    int reset_due;
+
+    uint64_t until; /* where the run ends */
     int stop, wanted_mark, marked;
     int fine, was_enabled;
     int silent; /* record nothing */
@@ -90,6 +98,9 @@ event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source
 
 /* Stop the run with an error, once: the first one counts. */
 void machine_fail(machine *m, const char *format, ...);
+
+/* chip.c: what a reset by the watchdog makes of it, between two instructions. */
+void machine_reset(machine *m);
 
 /* An interrupt may have become pending: look after the current instruction. */
 void machine_attend(machine *m);
@@ -110,5 +121,10 @@ void serial_install(machine *m);
 void serial_transmit(machine *m, uint8_t value, uint64_t edge);
 void serial_status(machine *m, uint8_t value);
 void serial_settle(machine *m);
+
+/* watchdog.c */
+enum { WDRF_MASK = 1 << 3 }; /* of MCUSR */
+void watchdog_install(machine *m);
+void watchdog_write(machine *m, uint8_t value, uint64_t edge);
 
 #endif

@@ -40,9 +40,11 @@ enum {
     ADDRESS_EEDR = 0x40,
     ADDRESS_GTCCR = 0x43,
     ADDRESS_SMCR = 0x53,
+    ADDRESS_MCUSR = 0x54,
     ADDRESS_SPL = 0x5D,
     ADDRESS_SPH = 0x5E,
     ADDRESS_SREG = 0x5F,
+    ADDRESS_WDTCSR = 0x60,
 };
 
 /* Offsets from UCSRnA. */

@@ -141,6 +141,9 @@ static void act(slot *s, uint16_t address, uint8_t value)
     case ROLE_USB:
         usb_write(m, address, value);
         break;
+    case ROLE_WATCHDOG:
+        watchdog_write(m, value, registers_write_edge(m->avr));
+        break;
     default:
         pass_on(s, address, value);
     }
@@ -222,6 +225,7 @@ void registers_install(machine *m)
     take(m, ADDRESS_SPH, ROLE_SPH);
     take(m, ADDRESS_EEDR, ROLE_MARK);
     take(m, ADDRESS_GTCCR, ROLE_PRESCALER);
+    take(m, ADDRESS_WDTCSR, ROLE_WATCHDOG);
     for (unsigned i = 0; i < facts->timer_count; i++) {
         timer_install(&m->timers[i], m, &facts->timers[i]);
         take_timer(m, &m->timers[i]);

@@ -121,7 +121,8 @@ int timer_owns(const timer *t, uint16_t address)
 
 void timer_install(timer *t, machine *owner, const timer_facts *facts)
 {
-    *t = (timer){.owner = owner, .facts = facts};
+    uint64_t now = owner->avr->cycle; /* of the reset */
+    *t = (timer){.owner = owner, .facts = facts, .synced = now, .prescaler_origin = now};
     if (facts->is_small)
         return;
     for (avr_io_t *io = owner->avr->io_port; io; io = io->next) {
