@@ -4,13 +4,14 @@ Runs the benchmarks: ``python -m benchmarks [NAME]... [--rounds N]``.
 
 import argparse
 
-from benchmarks import compare_rates, newcomer, simavr_speed
+from benchmarks import axis_ramps, compare_rates, newcomer, simavr_speed
 from stepgen.commands.report import print_tables
 
 BENCHMARKS = {
     "newcomer": newcomer,
     "simavr_speed": simavr_speed,
     "compare_rates": compare_rates,
+    "axis_ramps": axis_ramps,
 }
 _ROUNDS = 7
 
