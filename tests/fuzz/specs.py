@@ -126,6 +126,47 @@ def motor(draw: st.DrawFn, free: list[str], *, timed: bool) -> Data:
     }
 
 
+@st.composite
+def axis_specs(draw: st.DrawFn) -> Data:
+    """
+    Draw a spec for any board: one or two motors with ramps on compare channels of a timer.
+    """
+    board = draw(st.sampled_from(boards()))
+    free = [pin.label for pin in board.pins if not {"Serial RX", "Serial TX"} & set(pin.uses)]
+    names = draw(st.lists(motor_names, min_size=1, max_size=2, unique_by=str.lower))
+    return {
+        "library": draw(library_names),
+        "board": board.name,
+        "motors": {name: draw(axis(free)) for name in names},
+    }
+
+
+@st.composite
+def axis(draw: st.DrawFn, free: list[str]) -> Data:
+    """
+    Draw a motor with ramps on pins of *free*, which it takes away.
+    """
+    drive = draw(st.one_of([four_wire(free), step_dir(free)]))
+    always_on = drive["kind"] == "step-dir" and "enable" not in drive
+    cruise = draw(st.integers(100, 12_000))
+    motion = {
+        "kind": "trapezoid",
+        "cruise_speed": cruise,
+        "acceleration": draw(st.integers(1 + cruise**2 // 100_000, 4 * cruise)),
+    }
+    options = {
+        "start_speed": st.integers(1, cruise - 1),
+        "queue": st.integers(1, 16),
+    }
+    return {
+        "drive": drive,
+        "timing": {"kind": "compare", "timer": 1},
+        "motion": motion | draw(st.fixed_dictionaries({}, optional=options)),
+        "at_rest": draw(st.sampled_from(["hold"] if always_on else ["hold", "release"])),
+        "port": draw(st.sampled_from(["owned", "shared"])),
+    }
+
+
 sequences = st.sampled_from(["full", "wave", "half"])
 motor_shield = st.fixed_dictionaries({"kind": st.just("motor-shield"), "sequence": sequences})
 

@@ -11,9 +11,11 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, Phase, given, reject, settings
 from hypothesis import seed as seeded
+from hypothesis.strategies import SearchStrategy
 
 from stepgen import api
 from stepgen.errors import StepgenError
+from stepgen.verify.axis_scenarios import axis_scenarios
 from stepgen.verify.bounds.judge import judge_worst_case
 from stepgen.verify.firmware import build_firmware
 from stepgen.verify.report import MotorFigures, SpecReport
@@ -22,15 +24,21 @@ from stepgen.verify.scenarios import standard_scenarios
 from stepgen.verify.timeout_scenarios import timeout_scenarios
 from stepgen.verify.toolchain import default_compiler
 from stepgen.verify.watchdog_run import judge_watchdog
-from tests.fuzz.specs import specs, to_yaml
+from tests.fuzz.specs import axis_specs, specs, to_yaml
 
 FOUND = sorted((Path(__file__).parents[1] / "fuzz" / "found").iterdir())
 SILENCE = ": left alone at any point of a millisecond"
 FIRST_SEED = 20_260_201
 GROUPS, CAMPAIGN_GROUPS = 4, 100
 SPECS_IN_A_GROUP = 5
+AXIS_CAMPAIGN_GROUPS = 21
 SCENARIOS = ("single steps both ways", "stop while running", "refused calls", "hold and release",
              "all motors at once", "a busy, hostile sketch")  # fmt: skip
+
+
+OF_AXES = (": short moves both ways", ": endless runs", ": a queue that is full",
+           ": targets that change in flight", ": speeds that change in flight",
+           ": outputs on and off")  # fmt: skip
 
 
 def prove(path: Path) -> None:
@@ -45,8 +53,9 @@ def prove(path: Path) -> None:
     firmware = build_firmware(plan, loaded.document.text, compiler)
     report = SpecReport(str(path), compiler.name, "simavr")
     report.motors = {motor.name: MotorFigures(0) for motor in plan.motors}
-    for scenario in (*standard_scenarios(plan), *timeout_scenarios(plan)):
-        if scenario.name in SCENARIOS or scenario.name.endswith(SILENCE):
+    kinds = (standard_scenarios, timeout_scenarios, axis_scenarios)
+    for scenario in (scenario for kind in kinds for scenario in kind(plan)):
+        if scenario.name in SCENARIOS or scenario.name.endswith((SILENCE, *OF_AXES)):
             outcome = run_scenario(loaded, plan, firmware.bench, scenario)
             assert outcome.findings == (), (scenario.name, path.read_text(encoding="utf-8"))
             report.masked_cycles = max(report.masked_cycles, outcome.masked_cycles)
@@ -56,7 +65,7 @@ def prove(path: Path) -> None:
     assert report.passed, (report.checks, path.read_text(encoding="utf-8"))
 
 
-def run_group(folder: Path, seed: int) -> None:
+def run_group(folder: Path, seed: int, strategy: SearchStrategy[dict[str, Any]]) -> None:
     """
     Prove the specs that hypothesis draws from *seed*: always the same ones.
     """
@@ -69,7 +78,7 @@ def run_group(folder: Path, seed: int) -> None:
         phases=[Phase.generate],  # to shrink a failure takes minutes; its spec is in the message
         suppress_health_check=list(HealthCheck),
     )
-    @given(data=specs())
+    @given(data=strategy)
     def check(data: dict[str, Any]) -> None:
         path = folder / "spec.yaml"
         path.write_bytes(to_yaml(data))
@@ -91,7 +100,7 @@ def test_random_specs_run_as_the_model_says(tmp_path: Path, seed: int) -> None:
     """
     Twenty specs in all, of any board, drive, pins, sequence, timing and motion.
     """
-    run_group(tmp_path, seed)
+    run_group(tmp_path, seed, specs())
 
 
 @pytest.mark.campaign
@@ -100,4 +109,20 @@ def test_a_campaign_of_random_specs(tmp_path: Path, seed: int) -> None:
     """
     Five hundred more, each group with a seed of its own.
     """
-    run_group(tmp_path, seed)
+    run_group(tmp_path, seed, specs())
+
+
+def test_random_axes_run_as_the_model_says(tmp_path: Path) -> None:
+    """
+    Five specs of axes, of any board, drive, pins, sequence and ramp.
+    """
+    run_group(tmp_path, FIRST_SEED, axis_specs())
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("seed", range(FIRST_SEED + 1, FIRST_SEED + AXIS_CAMPAIGN_GROUPS))
+def test_a_campaign_of_random_axes(tmp_path: Path, seed: int) -> None:
+    """
+    A hundred more, each group with a seed of its own.
+    """
+    run_group(tmp_path, seed, axis_specs())
