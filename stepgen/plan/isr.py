@@ -161,7 +161,8 @@ def compose(
     reti = Instruction("reti", mcu.response_cycles)
     ending = (*end_code(kernel, leave, total_cycles(punctual)), reti)
     late = _late(end_code(kernel, leave, total_cycles(punctual)), handler) if gate.check else ()
-    count = (*count, *to_boundary((*step, *punctual, *ending, *late)))
+    rarely = "each 255 steps, and where a move begins or ends"
+    count = (*count, *to_boundary((*step, *punctual, *ending, *late), rarely))
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
     until_gate = arrival + total_cycles(entry)
     until_count = until_gate + gate.step_cycles + total_cycles(look)
@@ -222,11 +223,10 @@ def _late(ending: tuple[Instruction, ...], handler: str) -> tuple[Instruction, .
     return (replace(first, label="13"), *rest, Instruction(f"jmp   {handler}_late", 3))
 
 
-def to_boundary(between: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
+def to_boundary(between: tuple[Instruction, ...], note: str) -> tuple[Instruction, ...]:
     """
     Return the way to label 1, behind *between*: BREQ reaches 63 words, RJMP further.
     """
-    note = "each 255 steps, and where a move begins or ends"
     if sum(instruction.words for instruction in between) <= _BRANCH_WORDS:
         return (Instruction("breq  1f", 1, note),)
     return (Instruction("brne  .+2", 2), Instruction("rjmp  1f", 0, note))

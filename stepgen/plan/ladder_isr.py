@@ -127,7 +127,7 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         storage.count.load("r24", "count"),
         Instruction("dec   r24", 1, "one step less of this level"),
         storage.count.store("r24", "count"),
-        *to_boundary((*usual_way, *late)),
+        *to_boundary((*usual_way, *late), "at the end of a level"),
     )
     first_lap, *more_laps = gate.boundary
     decide = (2, 2, 1, 1, 2)  # push r25, then LDS, SUBI, BRCC that does not branch, RJMP

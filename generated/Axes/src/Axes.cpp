@@ -277,7 +277,7 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
       "   in    r24, %[count]            \n"  // 1
       "   dec   r24                      \n"  // 1  one step less of this level
       "   out   %[count], r24            \n"  // 1
-      "   breq  1f                       \n"  // 1  each 255 steps, and where a move begins or ends
+      "   breq  1f                       \n"  // 1  at the end of a level
       "   sbi   %[port0], 0              \n"  // 2  STEP rises: one step
       "   push  r25                      \n"  // 2
       "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
@@ -982,7 +982,7 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
       "   lds   r24, %[count]            \n"  // 2
       "   dec   r24                      \n"  // 1  one step less of this level
       "   sts   %[count], r24            \n"  // 2
-      "   breq  1f                       \n"  // 1  each 255 steps, and where a move begins or ends
+      "   breq  1f                       \n"  // 1  at the end of a level
       "   sbi   %[port0], 6              \n"  // 2  STEP rises: one step
       "   push  r25                      \n"  // 2
       "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
@@ -1654,7 +1654,7 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
       "   dec   r24                      \n"  // 1  one step less of this level
       "   sts   %[count], r24            \n"  // 2
       "   brne  .+2                      \n"  // 2
-      "   rjmp  1f                       \n"  //    each 255 steps, and where a move begins or ends
+      "   rjmp  1f                       \n"  //    at the end of a level
       "   lds   r24, %[port0]            \n"  // 2
       "   ori   r24, 0x08                \n"  // 1  the port's other bits stay
       "   sts   %[port0], r24            \n"  // 2  STEP rises: one step

@@ -279,7 +279,7 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   in    r24, %[count]            \n"  // 1
       "   dec   r24                      \n"  // 1  one step less of this level
       "   out   %[count], r24            \n"  // 1
-      "   breq  1f                       \n"  // 1  each 255 steps, and where a move begins or ends
+      "   breq  1f                       \n"  // 1  at the end of a level
       "   sbi   %[port0], 2              \n"  // 2  STEP rises: one step
       "   push  r25                      \n"  // 2
       "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval

@@ -322,7 +322,7 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   in    r24, %[count]            \n"  // 1
       "   dec   r24                      \n"  // 1  one step less of this level
       "   out   %[count], r24            \n"  // 1
-      "   breq  1f                       \n"  // 1  each 255 steps, and where a move begins or ends
+      "   breq  1f                       \n"  // 1  at the end of a level
       "   push  r30                      \n"  // 2
       "   push  r31                      \n"  // 2
       "   in    r30, %[state]            \n"  // 1  the row of the present phase
