@@ -58,7 +58,7 @@ _STATUS_BITS = (
     _Name("MOTOR_STAT_SPIN_FIXED", 0x40, "running at a speed that stays"),
     _Name("MOTOR_STAT_MISSED", 0x80, "a step came too late; a start clears it"),
 )
-_CALL_CYCLES = {"motor": 1000, "axis": 1200}
+_CALL_CYCLES = {"motor": 1000, "axis": 1300}
 
 _CODES = (
     _Name("MOTOR_ERROR_TOO_FAST", -1, "below MOTOR_MIN_TOP"),

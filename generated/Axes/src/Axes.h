@@ -39,7 +39,7 @@ constexpr uint32_t motorInterval(uint32_t stepsPerSecond) {
 
 // Every function may be called from setup() and loop(), from a callback, and from an interrupt of
 // the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
-// sketch: a call takes at most 1200 clocks there (xSetSpeed(), ySetSpeed() and zSetSpeed(): longer,
+// sketch: a call takes at most 1300 clocks there (xSetSpeed(), ySetSpeed() and zSetSpeed(): longer,
 // since it looks through the ramp), and counts as a stretch with interrupts off.
 
 // ---- x: A4988, 1/16 steps, timer 5 ----

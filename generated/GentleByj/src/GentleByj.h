@@ -63,7 +63,7 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 
 // Every function may be called from setup() and loop(), from a callback, and from an interrupt of
 // the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
-// sketch: a call takes at most 1200 clocks there (motorSetSpeed(): longer, since it looks through
+// sketch: a call takes at most 1300 clocks there (motorSetSpeed(): longer, since it looks through
 // the ramp), and counts as a stretch with interrupts off.
 
 // ---- motor: four switches (ULN2003 and the like), half steps, timer 1 ----
