@@ -93,9 +93,10 @@ def test_every_console_makes_the_steps_that_are_typed(stem: str) -> None:
     board = terminal(stem, "Console")
     board.until("type help\r\n")
     for motor in plan.motors:
-        name = f"{motor.name} " if plan.motors[1:] else ""
+        name = f"{motor.name} " if plan.motors[1:] or motor.motion.ladder else ""
+        word = "move" if motor.motion.ladder else "steps"
         for steps, position in ((20, 20), (-30, -10)):
-            board.enter(f"{name}steps {steps}", "ok")
+            board.enter(f"{name}{word} {steps}", "ok")
             board.wait(0.3)
             board.enter(f"{name}status", f"{name}at rest, at step {position}")
 
@@ -131,6 +132,37 @@ def test_the_console_moves_the_motor_as_it_is_told(stem: str) -> None:
     assert len(step_cycles(board.machine, spec)) == made
     shown = board.enter("status", "")
     assert shown.startswith("at rest, at step ")
+
+
+def test_the_console_of_an_axis_does_what_each_word_says() -> None:
+    """
+    Targets, ways, speeds, runs both ways, stops, and the coils; numbers that are none are told.
+    """
+    board = terminal("uno_trapezoid", "Console")
+    board.until("type help\r\n")
+    for typed, answer in (
+        ("to 40", "ok"),
+        ("speed 500", "ok"),
+        ("speed 20000", "that is no speed, or faster than the spec's"),
+        ("speed", "what? type help"),
+        ("run", "ok"),
+        ("on", "not while it runs"),
+        ("stop", "ok"),
+    ):
+        board.enter(typed, answer)
+    board.wait(0.3)
+    rest = int(board.enter("status", "").removeprefix("slide at rest, at step "))
+    assert rest > 0
+    board.enter("zero", "ok")
+    board.enter("slide back", "ok")
+    board.wait(0.2)
+    board.enter("halt", "ok")
+    back = int(board.enter("status", "").removeprefix("slide at rest, at step "))
+    assert -110 < back < -40  # 500 steps/s for 0.2 s, and up to 0.04 s for typing and looking
+    for typed in ("on", "off", "to 0"):
+        board.enter(typed, "ok")
+    board.wait(0.5)
+    board.enter("status", "slide at rest, at step 0")
 
 
 def test_the_console_says_what_can_be_typed_and_that_the_motor_runs() -> None:
