@@ -22,7 +22,6 @@ struct Motor {
 
 static const Motor motors[] = {
     {"motor", {8, 9, 10, 11}, {"D8", "D9", "D10", "D11"}},
-    {"feed", {4, 5, 6, 7}, {"D4", "D5", "D6", "D7"}},
 };
 
 static const uint8_t kOrders[3][4] = { {0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 1, 3} };
