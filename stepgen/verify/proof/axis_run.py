@@ -116,7 +116,7 @@ class AxisRun:
         for name, part in PARTS.items():
             if self.motor + name != self.name:
                 known[self.motor + name] = lambda name=name, part=part: self._known(name, part)
-        if self.name != "readRow":
+        if self.name not in {"readRow", f"{self.motor}HeightFor"}:
             known["readRow"] = self._row
         if self.name != "levelsIn":
             known["levelsIn"] = self._whole_levels
@@ -369,7 +369,7 @@ def _fills(steps: Any, parts: Any, length: Any) -> Any:  # noqa: ANN401
 
 
 def _is_goal(levels: Any, number: int, interval: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
-    slow_enough = number == 0 or z3.ULE(interval, levels[number].interval_256)
-    yield "that level is not faster", slow_enough
+    if number:
+        yield "that level is not faster", z3.ULE(interval, levels[number].interval_256)
     if number + 1 < len(levels):
         yield "the next one is", z3.UGT(interval, levels[number + 1].interval_256)
