@@ -121,14 +121,16 @@ class Machine(Operands):
     def _entry(self, pointer: Pointer, frame: Frame) -> Any:  # noqa: ANN401
         table, *field = pointer.place
         kind, entries = self._source.tables[table]
-        index = z3.ZeroExt(16, pointer.element) if pointer.element is not None else 0
+        index = z3.BitVecVal(0, 32)
+        if pointer.element is not None:
+            index = z3.ZeroExt(16, pointer.element)
         if field:
             kind, entries, size = self._column(kind, field[0], entries)
             self._prove(z3.URem(index, size) == 0, "the beginning of a row", frame)
             index = z3.simplify(z3.UDiv(index, z3.BitVecVal(size, 32)))
         self._prove(z3.ULT(index, len(entries)), "an element that the table has", frame)
         bits = 16 if kind == "uint16_t" else 8
-        if z3.is_bv_value(known := z3.simplify(z3.BitVecVal(0, 32) + index)):
+        if z3.is_bv_value(known := z3.simplify(index)):
             return z3.BitVecVal(entries[min(known.as_long(), len(entries) - 1)], bits)
         value = z3.BitVecVal(entries[0], bits)
         for number, entry in enumerate(entries):
