@@ -56,7 +56,8 @@ def axis_commands(plan: Plan, index: int, ladder: Ladder) -> Iterator[Command]:
         return Call(kind, index, top=top, steps=steps)
 
     def command(name: str, *actions: Call | Wait) -> Command:
-        return Command(name, actions, 0)
+        paces = any(isinstance(one, Call) and one.kind is CallKind.SET_PACE for one in actions)
+        return Command(name, actions, 0, works_first=paces)
 
     yield command("farther", call(CallKind.MOVE_TO, _FAR))
     yield command("nearer", call(CallKind.MOVE, 2))

@@ -78,11 +78,19 @@ class Way:
 class Command:
     """
     What the sketch asks for: *actions*, and how long it takes until that shows.
+
+    Args:
+        name: In words.
+        actions: Calls, and waits between them.
+        settle_cycles: How long it takes until what they did shows.
+        works_first: Whether the call works for long before it masks interrupts; what matters is how
+            the step meets that section, at its end.
     """
 
     name: str
     actions: tuple[Action, ...]
     settle_cycles: int = 2 * PERIOD_CYCLES
+    works_first: bool = False
 
 
 @dataclass(frozen=True)

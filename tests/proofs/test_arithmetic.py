@@ -58,6 +58,25 @@ QUICK = (
         ),
     ),
     Quick("uno_uln2003_28byj48", ("proofmotorStepsForTurns",)),
+    Quick(
+        "uno_trapezoid",
+        (
+            "slideInit",
+            "slideHalt",
+            "slideCurrentPosition",
+            "slideTargetPosition",
+            "slideDistanceToGo",
+            "slideIsRunning",
+            "slideReadMissed",
+            "slideSetCurrentPosition",
+            "slideEnableOutputs",
+            "slideDisableOutputs",
+            "slideAdvance",
+            "readRow",
+            "levelsIn",
+            "__vector_slide_boundary_late",
+        ),
+    ),
 )
 
 
@@ -131,6 +150,22 @@ MUTANTS = (
         "motion.rest = rest - run + 1;",
         "uno_motor_shield",
         "__vector_motor_boundary",
+    ),
+    Mutant(
+        "a lap too many in an interval of a ramp",
+        "timings/ladder_compare.j2",
+        "laps = (high >> 6) - 1;",
+        "laps = high >> 6;",
+        "uno_trapezoid",
+        "slideAdvance",
+    ),
+    Mutant(
+        "a halt that leaves the destination",
+        "motions/trapezoid.j2",
+        "motion.end = motion.destination = {{ motor.name }}Position();",
+        "motion.end = {{ motor.name }}Position();",
+        "uno_trapezoid",
+        "slideHalt",
     ),
 )
 

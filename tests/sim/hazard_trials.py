@@ -3,6 +3,7 @@ Trials of hazards with the library of a spec, in batches on one chip after the o
 """
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from stepgen.verify.hazard_run import Met, run_hazards
 from stepgen.verify.hazards import commands, ways
 from stepgen.verify.scenarios import Scenario
-from stepgen.verify.trials import AFTER_CYCLES, Trial
+from stepgen.verify.trials import AFTER_CYCLES, Command, Trial
 from tests.sim.shrinking import Library
 
 _BATCH = 200
@@ -22,7 +23,7 @@ def sample(library: Library, index: int, seed: int, count: int) -> list[Trial]:
     Return *count* trials of motor number *index*: any command on any way, at an offset of *seed*.
     """
     random = Random(seed)  # noqa: S311 - repeatable, not secret
-    return [
+    drawn = [
         Trial(
             random.choice(ways(library.plan, index)),
             random.choice(commands(library.plan, index)),
@@ -30,6 +31,21 @@ def sample(library: Library, index: int, seed: int, count: int) -> list[Trial]:
         )
         for _ in range(count)
     ]
+    aimed = {one.command.name: one.command for one in drawn if one.command.works_first}
+    leads = {name: lead_cycles(library, index, command) for name, command in aimed.items()}
+    return [replace(one, offset=one.offset - leads.get(one.command.name, 0)) for one in drawn]
+
+
+def lead_cycles(library: Library, index: int, command: Command) -> int:
+    """
+    Return how long *command* works before what may meet a step: its end, with interrupts masked.
+
+    It is measured on a way on which no step comes for as long as it takes.
+    """
+    calmest = max(ways(library.plan, index), key=lambda way: way.period_cycles)
+    calm = Trial(calmest, command, -calmest.period_cycles // 2)
+    (met,) = run(library, index, "calm", [calm])
+    return max(0, met.cycles - _LONGEST_CALL_CYCLES)
 
 
 def batches(

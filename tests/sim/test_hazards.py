@@ -13,9 +13,10 @@ from functools import cache
 import pytest
 
 from stepgen import api
+from stepgen.verify.hazard_run import run_hazards
 from stepgen.verify.hazards import commands, ways
 from stepgen.verify.trials import AFTER_CYCLES, Command, Trial, Way, sweep, window
-from tests.sim.hazard_trials import run, sample
+from tests.sim.hazard_trials import lead_cycles, run, sample
 from tests.sim.kinds import KINDS
 from tests.sim.shrinking import ROOT, Library
 
@@ -40,7 +41,7 @@ def call_cycles(library: Library, index: int, way: Way, command: Command) -> int
     """
     Return how long the calls of *command* take where no interrupt comes in between.
     """
-    calm = Trial(way, command, -_CALM_CYCLES)
+    calm = Trial(way, command, -max(_CALM_CYCLES, way.period_cycles // 2 * command.works_first))
     return run(library, index, "calm", [calm])[0].cycles
 
 
@@ -93,6 +94,25 @@ def test_a_command_meets_the_interrupt_at_every_clock() -> None:
     assert clocks[0] < -400
     assert clocks[-1] == AFTER_CYCLES - 1
     assert made > len(clocks) + 10
+
+
+def test_a_call_that_works_for_long_meets_a_step_where_it_masks_interrupts() -> None:
+    """
+    A step waits for the end of a call that looks through the ramp: the trials aim there.
+    """
+    library = library_of("uno_trapezoid")
+    way = next(one for one in ways(library.plan, 0) if one.name == "a step within a row")
+    slower = next(one for one in commands(library.plan, 0) if one.works_first)
+    lead = lead_cycles(library, 0, slower)
+
+    def longest_wait(lead: int) -> int:
+        trials = [(0, Trial(way, slower, -lead - early)) for early in range(0, 700, 50)]
+        done = run_hazards(library.loaded, library.plan, library.elf, trials)
+        assert done.outcome.findings == ()
+        return done.outcome.comparisons[0].jitter_cycles
+
+    assert lead > _CALM_CYCLES
+    assert longest_wait(lead) > longest_wait(0)
 
 
 @pytest.mark.campaign

@@ -15,8 +15,9 @@ from stepgen.plan.instructions import Gate, Instruction, Storage
 from stepgen.plan.isr import Motion
 from stepgen.plan.model import TimerPlan
 from stepgen.plan.planner import make_plan
-from stepgen.plan.timings import compare, wide_compare
+from stepgen.plan.timings import compare, ladder_compare, wide_compare
 from stepgen.spec import load_spec
+from stepgen.verify.axis_scenarios import axis_scenarios
 from stepgen.verify.firmware import build_firmware
 from stepgen.verify.late_scenarios import late_scenarios
 from stepgen.verify.passed_scenarios import passed_scenarios
@@ -635,6 +636,151 @@ WIDE_MUTANTS = {
 }
 
 
+# Bugs of an axis; only the check that must catch one is made, for it takes long to make all.
+AXIS_MUTANTS = (
+    Mutant(
+        "a call after which a level on the way down is forgotten",
+        "motions/trapezoid.j2",
+        "  motion.mode |= mode & kDescend;\n",
+        "",
+        check="slide: turns at every point of a period at full speed",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "levels that follow after a call",
+        "motions/trapezoid.j2",
+        "  motion.levels = motion.planned = 0;\n  return climbs;",
+        "  return climbs;",
+        check="slide: targets that change in flight",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a ramp without room to come down",
+        "motions/trapezoid.j2",
+        "if (room / 2 < climb) climb = room / 2;",
+        "if (room < climb) climb = room;",
+        check="slide: short moves both ways",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a level that is climbed and makes the way to rest no longer",
+        "motions/trapezoid.j2",
+        "    motion.height += motion.length;\n    ++motion.rung;",
+        "    ++motion.rung;",
+        check="slide: short moves both ways",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a direction that is not written",
+        "motions/trapezoid.j2",
+        "{{ kernel.turn_round(motor) | block(4) }}",
+        "",
+        check="slide: short moves both ways",
+        finding="the model says",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a queue whose last is made first",
+        "motions/trapezoid.j2",
+        "Queue[{{ motor.name }}First];",
+        "Queue[{{ motor.name }}Place({{ motor.name }}Queued - 1)];",
+        check="slide: a queue that is full",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a queue that a halt leaves",
+        "motions/trapezoid.j2",
+        "Halt() {\n  const Masked masked;\n%% if axis.queue\n  {{ motor.name }}Queued = 0;\n",
+        "Halt() {\n  const Masked masked;\n%% if axis.queue\n",
+        check="slide: a queue that is full",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a position that is read without cli",
+        "motions/trapezoid.j2",
+        "  const Masked masked;\n  return {{ motor.name }}Position() -",
+        "  return {{ motor.name }}Position() -",
+        check="slide: refused calls",
+        finding="without masking it",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a speed that is a little too fast",
+        "motions/trapezoid.j2",
+        "if (interval < {{ axis.prefix }}CruiseInterval)",
+        "if (interval < {{ axis.prefix }}CruiseInterval - 1)",
+        check="slide: refused calls",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a speed that is a level too high",
+        "motions/trapezoid.j2",
+        "if (goal >= motion.height + motion.length) {",
+        "if (goal >= motion.height) {",
+        check="slide: calls at every point of a period at full speed",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a turn that is forgotten",
+        "motions/trapezoid.j2",
+        "      mode |= kTurning;\n",
+        "",
+        check="slide: endless runs",
+        finding="slide: ",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "coils that go off with a lap of the last interval left",
+        "motions/trapezoid.j2",
+        "    ++motion.lapsLeft;\n",
+        "    if (!motion.lapsLeft) ++motion.lapsLeft;\n",
+        check="slide: short moves both ways",
+        finding="coils-off",
+        spec="uno_trapezoid",
+    ),
+    Mutant(
+        "a fraction of a clock that is lost where a way begins",
+        "timings/ladder_compare.j2",
+        "motion.due + ticks + (fraction >> 8);",
+        "motion.due + ticks;",
+        check="slide: moves that do not come to full speed",
+        finding="no step interrupt for the step due at",
+        spec="uno_trapezoid",
+    ),
+)
+# The same in the interrupt of an axis, which climbs by itself.
+LADDER_MUTANTS = {
+    "a fraction of a clock that is lost": (
+        "adc   r24, r25",
+        "add   r24, r25",
+        "slide: a long move at full speed",
+    ),
+    "a level that lasts as long as the one before": (
+        "subi  r24, 1",
+        "subi  r24, 2",
+        "slide: moves that do not come to full speed",
+    ),
+    "a level that begins without its steps": (
+        "lds   r24, %[length]",
+        "ldi   r24, 1",
+        "slide: a long move at full speed",
+    ),
+    "a passed step of an axis that is waited for": (
+        "brpl  13f",
+        "nop",
+        "slide: interrupts held up",
+    ),
+}
+
+
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
 def test_a_planted_bug_is_caught_by_its_check(mutant: Mutant, tmp_path: Path) -> None:
     """
@@ -723,3 +869,52 @@ def test_a_planted_bug_of_a_compare_channel_is_caught(
     outcomes = (run_scenario(loaded, plan, bench, one) for one in scenarios)
 
     assert any(outcome.findings for outcome in outcomes), f"{name} was not noticed"
+
+
+@pytest.mark.parametrize("mutant", AXIS_MUTANTS, ids=lambda mutant: mutant.name)
+def test_a_planted_bug_of_an_axis_is_caught_by_its_scenario(mutant: Mutant, tmp_path: Path) -> None:
+    """
+    The library of an axis with the bug compiles, and the scenario for it says what is wrong.
+    """
+    loaded = load_spec(SPECS / f"{mutant.spec}.yaml")
+    plan = make_plan(loaded)
+    templates = mutant.plant(tmp_path)
+    bench = build_firmware(plan, loaded.document.text, default_compiler(), templates).bench
+    (scenario,) = (one for one in axis_scenarios(plan) if one.name == mutant.check)
+
+    findings = run_scenario(loaded, plan, bench, scenario).findings
+
+    assert mutant.finding in "; ".join(findings), f"{mutant.name}: {findings}"
+
+
+@pytest.mark.parametrize("name", LADDER_MUTANTS)
+def test_a_planted_bug_of_the_interrupt_of_an_axis_is_caught(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """
+    The interrupt of an axis does the wrong thing by itself, and the scenario for it sees that.
+    """
+    old, new, check = LADDER_MUTANTS[name]
+    right = ladder_compare.gate
+
+    def planted(lines: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
+        return tuple(replace(one, text=new) if one.text == old else one for one in lines)
+
+    def wrong(timing: TimerPlan, motion: Motion, storage: Storage, mcu: Mcu) -> Gate:
+        made = right(timing, motion, storage, mcu)
+        bad = replace(
+            made,
+            advance=planted(made.advance),
+            check=planted(made.check),
+            go_on=planted(made.go_on),
+        )
+        assert bad != made
+        return bad
+
+    monkeypatch.setattr(ladder_compare, "gate", wrong)
+    loaded = load_spec(SPECS / "uno_trapezoid.yaml")
+    plan = make_plan(loaded)
+    bench = build_firmware(plan, loaded.document.text, default_compiler()).bench
+    (scenario,) = (one for one in axis_scenarios(plan) if one.name == check)
+
+    assert run_scenario(loaded, plan, bench, scenario).findings, f"{name} was not noticed"

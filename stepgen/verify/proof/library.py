@@ -11,6 +11,8 @@ from typing import Any
 import z3
 
 from stepgen.plan.model import Plan
+from stepgen.reference.ladder import Ladder
+from stepgen.verify.ladders import ladder_of
 from stepgen.verify.proof.gimple import Function, functions
 from stepgen.verify.proof.memory import Place
 from stepgen.verify.proof.numbers import wide
@@ -41,11 +43,12 @@ class Library:
         source: What it declares.
         functions: The intermediate form of its functions, and ``proofNAME`` for each
             ``...StepsForTurns`` and ``...StepsForMicrometres`` of its header, which is *NAME*.
-        min_top: MOTOR_MIN_TOP.
+        min_top: MOTOR_MIN_TOP; 0 without a motor that has one.
         max_top: MOTOR_MAX_TOP.
         units: What makes steps of turns and micrometres: the names of those.
         steps_per_mm: The steps in a millimetre of the motors that have metric units.
         timeouts: The command time-outs of the motors that have one, in milliseconds.
+        axes: Of the motors that are axes what they climb on, and the shortest interval of it.
     """
 
     source: Source
@@ -55,6 +58,7 @@ class Library:
     units: tuple[str, ...]
     steps_per_mm: dict[str, Fraction]
     timeouts: dict[str, int]
+    axes: dict[str, tuple[Ladder, int]]
 
     @property
     def chooses(self) -> list[str]:
@@ -90,8 +94,8 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
     return Library(
         source=source,
         functions=functions(unit, compiler, flags),
-        min_top=int(constants["MOTOR_MIN_TOP"]),
-        max_top=int(constants["MOTOR_MAX_TOP"]),
+        min_top=int(constants.get("MOTOR_MIN_TOP", 0)),
+        max_top=int(constants.get("MOTOR_MAX_TOP", 0)),
         units=tuple(units),
         steps_per_mm={
             motor.name: motor.steps_per_mm
@@ -102,6 +106,11 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
             motor.name: motor.command_timeout_ms
             for motor in plan.motors
             if motor.command_timeout_ms is not None
+        },
+        axes={
+            motor.name: (ladder, motor.motion.cruise_interval_256)
+            for motor in plan.motors
+            if (ladder := ladder_of(motor.motion))
         },
     )
 

@@ -51,6 +51,7 @@ class Machine(Operands):
         self.known: dict[str, Callable[..., Any]] = {}
         self.masked: Callable[[], object] = lambda: None
         self.unmasked: Callable[[], object] = lambda: None
+        self.named: Callable[[Any], Any] = lambda value: value
         self._functions = functions
         self._paths = paths
         self._frames = count()
@@ -118,14 +119,39 @@ class Machine(Operands):
             raise ValueError(f"line {frame.line}: {text}")
 
     def _entry(self, pointer: Pointer, frame: Frame) -> Any:  # noqa: ANN401
-        kind, entries = self._source.tables[pointer.place[0]]
-        index = z3.ZeroExt(16, pointer.element) if pointer.element is not None else 0
+        table, *field = pointer.place
+        kind, entries = self._source.tables[table]
+        index = z3.BitVecVal(0, 32)
+        if pointer.element is not None:
+            index = z3.ZeroExt(16, pointer.element)
+        if field:
+            kind, entries, size = self._column(kind, field[0], entries)
+            self._prove(z3.URem(index, size) == 0, "the beginning of a row", frame)
+            index = z3.simplify(z3.UDiv(index, z3.BitVecVal(size, 32)))
         self._prove(z3.ULT(index, len(entries)), "an element that the table has", frame)
         bits = 16 if kind == "uint16_t" else 8
+        if z3.is_bv_value(known := z3.simplify(index)):
+            return z3.BitVecVal(entries[min(known.as_long(), len(entries) - 1)], bits)
         value = z3.BitVecVal(entries[0], bits)
         for number, entry in enumerate(entries):
             value = z3.If(index == number, z3.BitVecVal(entry, bits), value)
         return value
+
+    def _column(self, row: str, name: str, entries: list[int]) -> tuple[str, list[int], int]:
+        """
+        Return the type of the field *name* of a table of rows, its *entries*, and a row's bytes.
+        """
+        fields = self._source.structs[row]
+        number = list(fields).index(name)
+        size = sum((integer(kind) or U16).bits // 8 for kind in fields.values())
+        return fields[name], entries[number :: len(fields)], size
+
+    def within(self, pointer: Pointer, frame: Frame) -> None:
+        """
+        Demand that *pointer* points to an element that its array has.
+        """
+        inside = z3.ULT(pointer.element, self.memory.size(pointer.place))
+        self._prove(inside, "an element that the array has", frame)
 
     def called(self, text: str, frame: Frame) -> Any:  # noqa: ANN401
         """
@@ -189,6 +215,9 @@ class Machine(Operands):
             frame.values[left] = value
         elif place.place[0] == "register":
             self.written.append((place.place[1], value))
+        elif place.element is not None:
+            self.within(place, frame)
+            self.memory.put(place.place, place.element, value)
         else:
             self.memory.write(place.place, value)
 
@@ -225,6 +254,10 @@ class Machine(Operands):
         return converted(value, given, wanted)
 
     def _binary(self, one: str, sign: str, other: str, frame: Frame, wanted: Integer) -> Any:  # noqa: ANN401
+        if isinstance(frame.values.get(one), Pointer):
+            ends = (frame.values[name].element for name in (one, other))
+            first, last = (z3.BitVecVal(0, 16) if end is None else end for end in ends)
+            return self._checked(sign, first, last, U16, frame)
         kind = self.type_of(one, frame) or self.type_of(other, frame) or wanted
         if sign in {"<<", ">>"}:
             kind = self.type_of(one, frame) or wanted
@@ -253,7 +286,7 @@ class Machine(Operands):
         value, exact = operation(sign, one, other, kind)
         if exact is not None:
             self._prove(exact, f"a result of {sign} that fits", frame)
-        return value
+        return self.named(value) if sign in {"+", "-", "*"} else value
 
     def _subtracts(self, other: Any, kind: Integer, frame: Frame) -> bool:  # noqa: ANN401
         """

@@ -14,6 +14,7 @@ _LOW_BYTES = "the lower bits are what is wanted"
 _METRIC = "it wraps where the header says; that it is the position up to there is proven"
 _PARTS = "the parts make up the whole, which is proven of the interval or of what is left"
 _COUNTS = "counts of a timer, which wraps; no match is as much as half a round ahead: proven"
+_AHEAD = "which of two positions lies ahead: those are less than 2**31 apart, or count as backward"
 _LAPS = "0 laps stand for 256; without kLaps none is counted; that they make up the limit is proven"
 
 _CHANNEL, _FLAGS = re.compile(r"\b(OC[FR])\d[ABC]\b"), re.compile(r"\bTIFR\d\b")
@@ -67,6 +68,34 @@ MEANT = {
     "OCR1A = now + kSoonTicks;": _COUNTS,
     "++motion.missed;": "it wraps at 16 bits, as the header says",
     "motion.rest += run - 1;": _ENDLESS,
+    # An axis.
+    "if (motorPassed()) ++motorMotion.missed;": "it wraps at 16 bits, as the header says",
+    "if (motorPassed() && !motion.lapsLeft) ++motion.missed;": "the same",
+    "return motion.rest + static_cast<uint16_t>(motion.levels * motion.length) + GPIOR1;": (
+        "a motor that coasts has 1 and -1 left; else it fits, which is proven"
+    ),
+    "return motion.end + (motion.mode & kReverse ? left : -left);": _MODULO,
+    "return motorPosition() - motorMotion.origin;": _MODULO,
+    "return motorTarget() - motorMotion.origin;": _MODULO,
+    "return motorTarget() - motorPosition();": _MODULO,
+    "motion.origin = motorPosition() - position;": _MODULO,
+    "motorAim(motorMotion.origin + target, 0);": _MODULO,
+    "motorAim(motorPosition() + steps, 0);": _MODULO,
+    "motorAim(motorPosition() + kFar, kEndless);": _MODULO,
+    "motorAim(motorPosition() - kFar, kEndless);": _MODULO,
+    "const uint32_t destination = motion.origin + target;": _MODULO,
+    "motion.end = motion.mode & kReverse ? here - steps : here + steps;": _MODULO,
+    "motion.end += motion.mode & kReverse ? -kFar : kFar;": _MODULO,
+    "uint32_t way = motion.destination - motion.end;": _MODULO,
+    "way = -way;": _MODULO,
+    "const int32_t ahead = mode & kReverse ? here - destination : destination - here;": _AHEAD,
+    "motion.change = -row.slope;": "it is added modulo 2**32; that it is the ramp's is proven",
+    "motion.interval += motion.change;": "the same",
+    "uint16_t ticks = interval >> 8;": _PARTS,
+    "const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);": _PARTS,
+    "motion.dueFraction = fraction;": "its upper bit is in the next line",
+    "const uint16_t due = motion.due + ticks + (fraction >> 8);": _COUNTS,
+    "motion.due += kLapTicks;": _COUNTS,
     "motion.rest += --run;": "the carry is taken in the next line",
     "if (motion.rest < run) ++motion.restHigh;": _ENDLESS,
 }
@@ -74,6 +103,7 @@ MEANT = {
 
 _NAMES = (
     *("Position", "ReadPosition", "Show", "EventClock", "Count", "Motion"),
+    *("Left", "Target", "Queue", "Queued", "Place", "Aim", "Passed"),
     *("Deadline", "Timeout"),
 )
 

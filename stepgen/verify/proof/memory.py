@@ -29,6 +29,9 @@ class Memory:
         self._types |= {(name,): U8 for name in GENERAL_PURPOSE.values()}
         for name, kind in source.variables.items():
             self.declare((name,), kind)
+        for name, (kind, size) in source.arrays.items():
+            for number in range(size):
+                self.declare((name, str(number)), kind)
         self._values = {place: unknown(place, kind) for place, kind in self._types.items()}
 
     def declare(self, place: Place, kind: str) -> None:
@@ -68,6 +71,29 @@ class Memory:
         Put the integer *value* at *place*.
         """
         self._values[place] = value
+
+    def size(self, place: Place) -> int:
+        """
+        Return how many elements the array at *place* has.
+        """
+        return sum(1 for _ in self.within(place))
+
+    def element(self, place: Place, index: Any) -> Any:  # noqa: ANN401
+        """
+        Return element *index* of the array at *place*.
+        """
+        value = self.read((*place, "0"))
+        for number in range(1, self.size(place)):
+            value = z3.If(index == number, self.read((*place, str(number))), value)
+        return value
+
+    def put(self, place: Place, index: Any, value: Any) -> None:  # noqa: ANN401
+        """
+        Make *value* element *index* of the array at *place*.
+        """
+        for number in range(self.size(place)):
+            one = (*place, str(number))
+            self.write(one, z3.If(index == number, value, self.read(one)))
 
     def forget(self, moment: str) -> None:
         """

@@ -60,6 +60,12 @@ class Operands(ABC):
         Execute the call *text* and return its result.
         """
 
+    @abstractmethod
+    def within(self, pointer: Pointer, frame: Frame) -> None:
+        """
+        Demand that *pointer* points to an element that its array has.
+        """
+
     def type_of(self, text: str, frame: Frame) -> Integer | None:
         """
         Return the type of *text*, None if it is no integer.
@@ -71,6 +77,8 @@ class Operands(ABC):
             return None
         if place.place[0] == "register":
             return scalar(frame.function.types[text[1:]].rstrip(" *"))
+        if place.element is not None:
+            return self.memory.type_at((*place.place, "0"))
         return self.memory.type_at(place.place)
 
     def value(self, text: str, frame: Frame, wanted: Integer) -> Any:  # noqa: ANN401
@@ -87,6 +95,9 @@ class Operands(ABC):
         kind = self.type_of(text, frame)
         if kind is not None and place.place[0] == "register":
             return z3.BitVec(f"register {place.place[1]}, read {next(self._reads)}", kind.bits)
+        if place.element is not None:
+            self.within(place, frame)
+            return self.memory.element(place.place, place.element)
         return self.memory.read(place.place)
 
     def pointer(self, text: str, frame: Frame) -> Any:  # noqa: ANN401, PLR0911 - one for each form
@@ -131,7 +142,10 @@ class Operands(ABC):
             return frame.values[text[1:]]
         base, arrow, fields = text.partition("->")
         if arrow:
-            return Pointer((*frame.values[base].place, *fields.split(".")))
+            pointer = frame.values[base]
+            return Pointer((*pointer.place, *fields.split(".")), pointer.element)
+        if (found := _ELEMENT.match(text)) and found[1] in self._source.arrays:
+            return Pointer((found[1],), self.value(found[2], frame, U16))
         parts = text.split(".")
         for size in range(len(parts), 0, -1):
             name = ".".join(parts[:size])

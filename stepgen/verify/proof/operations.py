@@ -25,6 +25,8 @@ def operation(sign: str, one: Any, other: Any, kind: Integer) -> tuple[Any, Any]
         return (one >> other if kind.signed else z3.LShR(one, other)), None
     if sign == "/":
         return (one / other if kind.signed else z3.UDiv(one, other)), other != 0
+    if sign == "*":
+        return one * other, _product_fits(one, other, kind)
     bits = 2 * kind.bits + 1
     wide = _exact(sign, kind.wide(one, bits), kind.wide(other, bits))
     value = z3.Extract(kind.bits - 1, 0, wide)
@@ -37,11 +39,14 @@ def _exact(sign: str, one: Any, other: Any) -> Any:  # noqa: ANN401
             return one + other
         case "-":
             return one - other
-        case "*":
-            return one * other
         case "<<":
             return one << other
     raise ValueError(f"an operation {sign}")
+
+
+def _product_fits(one: Any, other: Any, kind: Integer) -> Any:  # noqa: ANN401
+    fits = z3.BVMulNoOverflow(one, other, kind.signed)
+    return z3.And(fits, z3.BVMulNoUnderflow(one, other)) if kind.signed else fits
 
 
 def _bit(value: int) -> Any:  # noqa: ANN401

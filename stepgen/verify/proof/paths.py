@@ -28,13 +28,17 @@ class Paths:
     The ways through a piece of code; each run of it takes one.
 
     The code is run again for each way, and asks `decide` at each fork. It must do the same each
-    time it decides the same. What it claims on a way is proven at the end of the way.
+    time it decides the same. What it claims on a way is proven at the end of the way. Where it
+    `learns`, what is proven is known to the proofs after it: that helps where each follows from the
+    one before.
     """
 
     def __init__(self) -> None:
         self.violations: list[Violation] = []
         self.inputs: dict[str, Any] = {}
         self.proven = 0
+        self.possible = 0
+        self.learns = False
         self._solver = z3.Solver()
         self._claims: list[tuple[Any, str, str]] = []
         self._taken: list[bool] = []
@@ -96,9 +100,12 @@ class Paths:
         Show that all claims of this way hold, or note those that do not as violations.
         """
         self.proven += len(self._claims)
+        self.possible += self._possible(z3.BoolVal(val=True))
         for claim, says, where in self._claims:
             if not z3.is_true(claim) and self._possible(z3.Not(claim)):
                 self.violations.append(Violation(says, where, self._example(z3.Not(claim))))
+            elif self.learns:
+                self._solver.add(claim)
 
     def _example(self, condition: Any) -> str:  # noqa: ANN401
         self._solver.push()

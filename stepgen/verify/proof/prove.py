@@ -9,6 +9,7 @@ from typing import Any
 
 import z3
 
+from stepgen.verify.proof.axis_run import AxisRun, axis_entries
 from stepgen.verify.proof.claims import CLAIMS, POSITION_READ, choice, longest_way, steps_of
 from stepgen.verify.proof.integers import U16, integer
 from stepgen.verify.proof.library import Chosen, Library
@@ -57,6 +58,8 @@ def entries(library: Library, motor: str) -> list[str]:
     """
     Return the functions by which a sketch or an interrupt gets at *motor*, and parts of them.
     """
+    if motor in library.axes:
+        return axis_entries(library, motor)
     names = [f"__vector_{motor}_{name}" if name == "boundary" else motor + name for name in CLAIMS]
     return [name for name in names if name in library.functions]
 
@@ -67,16 +70,20 @@ def shared(library: Library) -> list[str]:
     """
     speeds = [f"{motor}TimerCalcNanometresPerSecond" for motor in library.steps_per_mm]
     steps = [f"proof{name}" for name in library.units]
-    return [*library.chooses, "motorTimerCalcPerSecond", *speeds, *steps]
+    rates = [name for name in ("motorTimerCalcPerSecond",) if name in library.functions]
+    return [*library.chooses, *rates, *speeds, *steps]
 
 
 def _prove(library: Library, name: str, motor: str) -> Proof:
     proof, paths = Proof(name), Paths()
     started = time.process_time()
-    run = _Run(library, name, motor, paths, proof.meant)
+    kind = AxisRun if motor in library.axes else _Run
+    run = kind(library, name, motor, paths, proof.meant)
     proof.ways = sum(1 for _ in paths.runs(run.once))
     proof.seconds = time.process_time() - started
     proof.proven, proof.violations = paths.proven, paths.violations
+    if not paths.possible:
+        proof.violations.append(Violation("what is assumed can be", name, "nothing"))
     return proof
 
 

@@ -14,7 +14,8 @@ _TABLE = re.compile(
     r"^static const (\w+) (\w+)\[\] PROGMEM.*?= \{(.*?)\};", re.MULTILINE | re.DOTALL
 )
 _VARIABLE = re.compile(r"^static (\w+) (\w+);", re.MULTILINE)
-_MOTOR = re.compile(r"^int8_t (\w+)SetSpeed\($", re.MULTILINE)
+_ARRAY = re.compile(r"^static (\w+) (\w+)\[(\d+)\];", re.MULTILINE)
+_MOTOR = re.compile(r"^int8_t (\w+)SetSpeed\(", re.MULTILINE)
 _ENDS = ";{}:"
 _OPERANDS = re.compile(r"^\s+:\n\s+:\n(.*?)^\s+: \"memory\"\);", re.MULTILINE | re.DOTALL)
 _OPERAND = re.compile(r'\[(\w+)\] "\w"\(&?(?:_SFR_IO_ADDR\()?([\w.]+)\)?\)')
@@ -30,6 +31,7 @@ class Source:
         structs: The fields of each structure with their types, in order.
         tables: The type and the entries of each table in flash.
         variables: The type of each variable.
+        arrays: The type and the size of each variable that is an array.
         motors: The names of the motors.
         operands: For each motor the operands of its step interrupt's assembly, such as ``count``.
     """
@@ -38,6 +40,7 @@ class Source:
     structs: dict[str, dict[str, str]]
     tables: dict[str, tuple[str, list[int]]]
     variables: dict[str, str]
+    arrays: dict[str, tuple[str, int]]
     motors: tuple[str, ...]
     operands: dict[str, dict[str, str]]
 
@@ -72,12 +75,13 @@ def read_source(path: Path) -> Source:
             for kind, name, body in _TABLE.findall(bare)
         },
         variables={name: kind for kind, name in _VARIABLE.findall(bare)},
+        arrays={name: (kind, int(size)) for kind, name, size in _ARRAY.findall(bare)},
         motors=motors,
         operands={
             motor: operands
             for motor in motors
             for operands in listed
-            if operands.get("mode") == f"{motor}Motion.mode"
+            if any(place.startswith(f"{motor}Motion.") for place in operands.values())
         },
     )
 

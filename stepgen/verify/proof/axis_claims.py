@@ -1,0 +1,321 @@
+"""
+What each function of an axis must do, beyond keeping the invariant.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import z3
+
+from stepgen.verify.proof.axis_state import ENDLESS, REVERSE, RUNNING, TURNING, AxisState
+
+TOO_FAST, RUNS, QUEUE_FULL = -1, -5, -6
+_FAR = 1 << 30
+
+Said = Iterator[tuple[str, Any]]
+
+
+@dataclass(frozen=True)
+class AxisWay:
+    """
+    One way through a function of an axis: what was before, what is after, and what it returns.
+
+    Args:
+        spec: The shortest interval of the spec, and how high the motor climbs for it.
+        height: What ``...HeightFor`` returns for the interval that a call names.
+    """
+
+    before: AxisState
+    after: AxisState
+    arguments: list[Any]
+    result: Any
+    spec: tuple[int, int]
+    height: Any
+
+
+def _stays(way: AxisWay) -> Said:
+    yield "a call makes no step", way.after.position == way.before.position
+
+
+def _same(way: AxisWay) -> Any:  # noqa: ANN401 - z3 has no types
+    own = (f"{way.before.motor}Motion", f"{way.before.motor}Queue", f"{way.before.motor}Queued")
+    places = [place for place in way.before.values if place[0] in own]
+    same = [way.after.values[place] == way.before.values[place] for place in places]
+    return z3.And(*same, way.after.count == way.before.count)
+
+
+def _goes_to(way: AxisWay, destination: Any) -> Said:  # noqa: ANN401
+    """
+    Yield what holds once the motor is to go to *destination*, or without an end beyond it.
+    """
+    before, after = way.before, way.after
+    yield from _stays(way)
+    there = destination == before.position
+    same = z3.And(z3.Not(before.is_in(RUNNING)), there)
+    yield (
+        "at rest in that place nothing happens",
+        z3.Implies(same, after.of("mode") == before.of("mode")),
+    )
+    yield "else it runs", z3.Or(same, after.is_in(RUNNING))
+    yield "it goes there in the end", after.of("destination") == destination
+    turns = after.is_in(TURNING)
+    yield "or comes to rest first", z3.Or(turns, after.of("end") == destination)
+    yield "a motor at rest turns at once", z3.Implies(turns, before.is_in(RUNNING))
+    ahead = destination - before.position
+    back = z3.If(before.is_in(REVERSE), ahead > 0, ahead < 0)
+    behind = z3.And(before.is_in(RUNNING), z3.Or(back, ahead == 0))
+    yield "it turns where the place lies behind", z3.Implies(behind, turns)
+    yield "nothing waits", after.queued == 0
+
+
+def move_to(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...MoveTo``.
+    """
+    yield from _goes_to(way, way.before.of("origin") + way.arguments[0])
+    yield "it ends", z3.Not(way.after.is_in(ENDLESS))
+    yield "it is never refused", way.result == 0
+
+
+def move(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...Move``.
+    """
+    yield from _goes_to(way, way.before.position + way.arguments[0])
+    yield "it ends", z3.Not(way.after.is_in(ENDLESS))
+    yield "it is never refused", way.result == 0
+
+
+def run_forward(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...RunForward``.
+    """
+    yield from _runs(way, _FAR)
+
+
+def run_backward(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...RunBackward``.
+    """
+    yield from _runs(way, -_FAR)
+
+
+def _runs(way: AxisWay, ahead: int) -> Said:
+    after = way.after
+    yield from _goes_to(way, way.before.position + ahead)
+    yield "it runs without an end", z3.And(after.is_in(RUNNING), after.is_in(ENDLESS))
+    there = after.is_in(REVERSE) == (ahead < 0)
+    yield "that way, or it turns", there != after.is_in(TURNING)
+
+
+def stop(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...Stop``.
+    """
+    yield from _stays(way)
+    before, after = way.before, way.after
+    yield "it runs on if it ran", after.is_in(RUNNING) == before.is_in(RUNNING)
+    yield "it ends where it comes to rest", z3.Not(after.is_in(ENDLESS | TURNING))
+    rest = z3.ZeroExt(24, after.of("height")) + z3.ZeroExt(32, after.count)
+    yield "as soon as it can", z3.Implies(after.is_in(RUNNING), after.left == rest)
+    yield "there it is to be", after.target == after.of("end")
+
+
+def halt(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...Halt``.
+    """
+    yield from _stays(way)
+    yield "it rests", z3.Not(way.after.is_in(RUNNING))
+    yield "where it is to be", way.after.target == way.before.position
+
+
+def set_speed(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...SetSpeed``.
+    """
+    before, after = way.before, way.after
+    refused = z3.ULT(way.arguments[0], way.spec[0])
+    yield from _stays(way)
+    yield "it refuses what is too fast", way.result == z3.If(refused, _code(TOO_FAST), _code(0))
+    yield "then nothing changes", z3.Implies(refused, _same(way))
+    taken = z3.And(after.of("cruise") == way.arguments[0], after.of("goal") == way.height)
+    yield "else the interval holds, and how high it climbs for it", z3.Or(refused, taken)
+    yield "what is left stays", after.left == before.left
+    yield "the end stays", after.of("end") == before.of("end")
+
+
+def queue_move_to(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...QueueMoveTo``.
+    """
+    before, after = way.before, way.after
+    destination = before.of("origin") + way.arguments[0]
+    running, endless = before.is_in(RUNNING), before.is_in(ENDLESS)
+    again = z3.And(running, destination == before.target)
+    full = z3.And(running, before.queued == before.places)
+    code = z3.If(full, _code(QUEUE_FULL), _code(0))
+    code = z3.If(endless, _code(RUNS), z3.If(again, _code(0), code))
+    yield from _stays(way)
+    yield "it refuses behind a run without an end, and what has no place", way.result == code
+    yield "then nothing changes", z3.Implies(z3.Or(code != 0, again), _same(way))
+    yield "else it goes there in the end", z3.Implies(code == 0, after.target == destination)
+
+
+def init(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...Init``.
+    """
+    after = way.after
+    yield "the position is 0", after.position == after.of("origin")
+    yield "it rests", z3.Not(after.is_in(RUNNING))
+    yield "it cruises as the spec says", after.of("cruise") == way.spec[0]
+    yield "as high as that", after.of("goal") == way.spec[1]
+    yield "no step was missed", after.of("missed") == 0
+    yield "forward", z3.Not(after.is_in(REVERSE))
+
+
+def current_position(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...CurrentPosition``.
+    """
+    yield "the position", way.result == way.before.position - way.before.of("origin")
+    yield "nothing changes", _same(way)
+
+
+def position(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...Position``, a part of other functions.
+    """
+    yield "the position", way.result == way.before.position
+    yield "nothing changes", _same(way)
+
+
+def target_position(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...TargetPosition``.
+    """
+    yield "the target", way.result == way.before.target - way.before.of("origin")
+    yield "nothing changes", _same(way)
+
+
+def distance_to_go(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...DistanceToGo``.
+    """
+    yield "the distance", way.result == way.before.target - way.before.position
+    yield "nothing changes", _same(way)
+
+
+def is_running(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...IsRunning``.
+    """
+    yield "whether it runs", (way.result != 0) == way.before.is_in(RUNNING)
+    yield "nothing changes", _same(way)
+
+
+def read_missed(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...ReadMissed``.
+    """
+    yield "the steps that came too late", way.result == way.before.of("missed")
+    yield "nothing changes", _same(way)
+
+
+def set_current_position(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...SetCurrentPosition``.
+    """
+    yield from _stays(way)
+    yield from _only_at_rest(way)
+    named = way.after.position - way.after.of("origin") == way.arguments[0]
+    yield "the place has that number", z3.Or(way.before.is_in(RUNNING), named)
+
+
+def outputs(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...EnableOutputs`` and ``...DisableOutputs``.
+    """
+    yield from _stays(way)
+    yield from _only_at_rest(way)
+
+
+def _only_at_rest(way: AxisWay) -> Said:
+    running = way.before.is_in(RUNNING)
+    yield "it refuses while it runs", way.result == z3.If(running, _code(RUNS), _code(0))
+    yield "then nothing changes", z3.Implies(running, _same(way))
+
+
+def boundary(way: AxisWay) -> Said:
+    """
+    Yield what must hold after the rare ways of a step interrupt.
+    """
+    before, after = way.before, way.after
+    steps = z3.And(before.is_in(RUNNING), before.of("lapsLeft") == 0)
+    ahead = z3.If(before.is_in(REVERSE), z3.BitVecVal(-1, 32), z3.BitVecVal(1, 32))
+    made = z3.If(steps, ahead, 0)
+    yield "the position changes by the step that is made", after.position == before.position + made
+    over = z3.And(steps, before.left == 1)
+    onward = z3.Or(before.of("end") != before.of("destination"), before.queued != 0)
+    yield (
+        "it rests after the last step",
+        z3.Implies(
+            before.is_in(RUNNING), after.is_in(RUNNING) == z3.Not(z3.And(over, z3.Not(onward)))
+        ),
+    )
+    same = z3.Or(before.is_endless, after.left == before.left - z3.If(steps, _one(40), 0))
+    yield "a step less is left of the way", z3.Or(z3.Not(before.is_in(RUNNING)), over, same)
+    turned = z3.And(over, before.is_in(TURNING))
+    yield (
+        "after a turn it goes on to the destination",
+        z3.Implies(
+            z3.And(turned, after.is_in(RUNNING), z3.Not(after.is_in(ENDLESS)), before.queued == 0),
+            after.of("end") == before.of("destination"),
+        ),
+    )
+    yield "the target stays", z3.Or(before.is_in(ENDLESS), after.target == before.target)
+
+
+def boundary_late(way: AxisWay) -> Said:
+    """
+    Yield what must hold after an interrupt that finds the next step due already.
+    """
+    yield from _stays(way)
+    more = way.after.of("missed") - way.before.of("missed")
+    yield "one is missed at most", z3.ULE(more, 1)
+    yield "what is left stays", way.after.left == way.before.left
+
+
+def _code(number: int) -> Any:  # noqa: ANN401
+    return z3.BitVecVal(number, 8)
+
+
+def _one(bits: int) -> Any:  # noqa: ANN401
+    return z3.BitVecVal(1, bits)
+
+
+AXIS_CLAIMS: dict[str, Callable[[AxisWay], Said]] = {
+    "Init": init,
+    "MoveTo": move_to,
+    "Move": move,
+    "QueueMoveTo": queue_move_to,
+    "RunForward": run_forward,
+    "RunBackward": run_backward,
+    "Stop": stop,
+    "Halt": halt,
+    "SetSpeed": set_speed,
+    "ReadMissed": read_missed,
+    "CurrentPosition": current_position,
+    "TargetPosition": target_position,
+    "DistanceToGo": distance_to_go,
+    "Position": position,
+    "IsRunning": is_running,
+    "SetCurrentPosition": set_current_position,
+    "EnableOutputs": outputs,
+    "DisableOutputs": outputs,
+    "boundary": boundary,
+    "boundary_late": boundary_late,
+}
+"""The claims by function, without the axis's name."""

@@ -1,0 +1,375 @@
+"""
+One way after the other through a function of an axis, or through a part of one.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import z3
+
+from stepgen.verify.proof.axis_claims import AXIS_CLAIMS, AxisWay
+from stepgen.verify.proof.axis_parts import (
+    PARTS,
+    Part,
+    goes_on,
+    row_of,
+    share_of,
+    whole_levels,
+)
+from stepgen.verify.proof.axis_state import (
+    CLIMB,
+    COAST,
+    DESCEND,
+    RUNNING,
+    AxisState,
+    facts,
+    invariant,
+)
+from stepgen.verify.proof.integers import U16, integer
+from stepgen.verify.proof.library import Library
+from stepgen.verify.proof.machine import Machine
+from stepgen.verify.proof.memory import GENERAL_PURPOSE, Place
+from stepgen.verify.proof.operands import Pointer
+from stepgen.verify.proof.paths import Paths
+from stepgen.verify.proof.ramp import LENGTHS, Ramp
+
+_BY_ITSELF = "the step interrupt by itself"
+_VECTOR = "__vector_"
+_ROW_BYTES = 4
+_MOVES = {
+    *("MoveTo", "Move", "QueueMoveTo", "RunForward", "RunBackward", "Stop", "SetSpeed"),
+    "boundary",
+}
+"""What changes a way while the axis is on it: too much for z3 unless each mode has its ways."""
+
+
+def axis_entries(library: Library, motor: str) -> list[str]:
+    """
+    Return the functions by which a sketch or an interrupt gets at the axis *motor*, and its parts.
+    """
+    names = [
+        f"{_VECTOR}{motor}_{name}" if name.startswith("boundary") else motor + name
+        for name in (*AXIS_CLAIMS, *PARTS, "HeightFor")
+    ]
+    found = (name for name in names if name in library.functions)
+    return [*found, "readRow", "levelsIn", _BY_ITSELF]
+
+
+@dataclass
+class AxisRun:
+    """
+    The proof of the function *name* of the axis *motor*, way by way.
+    """
+
+    library: Library
+    name: str
+    motor: str
+    paths: Paths
+    meant: set[str]
+    _calls: int = 0
+    _names: dict[int, tuple[Any, Any]] = field(default_factory=dict)
+    _ramp: Ramp = field(init=False)
+    _machine: Machine = field(init=False)
+
+    def __post_init__(self) -> None:
+        """
+        Take the ramp from the reference model, and show what is said of it.
+        """
+        ladder, self._cruise_256 = self.library.axes[self.motor]
+        self._ramp = Ramp(ladder)
+        self._goal = ladder.levels[ladder.goal(self._cruise_256)].height
+
+    def once(self) -> None:
+        """
+        Take one way through the function.
+        """
+        self._calls, self._names = 0, {}
+        kind = self.name.removeprefix(_VECTOR).removeprefix(self.motor).removeprefix("_")
+        machine = Machine(self.library.source, self.library.functions, self.paths)
+        machine.used, self._machine, self.paths.learns = self.meant, machine, True
+        if kind in _MOVES or kind in PARTS:
+            machine.named = self._named
+        known = machine.memory.snapshot()
+        self.paths.inputs = {".".join(place): value for place, value in known.items()}
+        for says in self._ramp.check():
+            self._show(says, z3.BoolVal(val=False))
+        self._stand_in()
+        if self.name == _BY_ITSELF:
+            self._by_itself()
+        elif kind in PARTS:
+            self._part(PARTS[kind])
+        elif kind == "HeightFor":
+            self._height_for()
+        elif kind == "readRow":
+            self._read_row()
+        elif kind == "levelsIn":
+            self._levels_in()
+        else:
+            self._whole(kind)
+
+    def _stand_in(self) -> None:
+        """
+        Let the parts that are proven by themselves stand for what is known of them.
+        """
+        known = self._machine.known
+        for name, part in PARTS.items():
+            if self.motor + name != self.name:
+                known[self.motor + name] = lambda name=name, part=part: self._known(name, part)
+        if self.name not in {"readRow", f"{self.motor}HeightFor"}:
+            known["readRow"] = self._row
+        if self.name != "levelsIn":
+            known["levelsIn"] = self._whole_levels
+        if self.name != f"{self.motor}Position":
+            known[f"{self.motor}Position"] = lambda: self._state().position
+        self._height = z3.BitVec("the height for the interval", 16)
+        known[f"{self.motor}HeightFor"] = lambda _: self._height
+
+    def _whole(self, kind: str) -> None:
+        machine = self._machine
+        function = self.library.functions[self.name]
+        arguments = [
+            z3.BitVec(name, (integer(function.types[name]) or U16).bits)
+            for name in function.parameters
+        ]
+        self.paths.inputs |= {str(argument): argument for argument in arguments}
+        machine.unmasked = self._keeps
+        before = self._state()
+        self.paths.assume(self._ramp.is_level(self._height))
+        for height in (0, self._goal):
+            self.paths.assume(self._ramp.is_level(z3.BitVecVal(height, 16)))
+        if kind.startswith("boundary"):
+            before = self._interrupted(before, late=kind == "boundary_late")
+        if kind == "Init":
+            self._from_reset(before)
+        else:
+            self._assume(before)
+            if kind in _MOVES:
+                self._split()
+                before = replace(before, values={**before.values, **self._split_values})
+        result = machine.call(self.name, *arguments)
+        after = self._keeps()
+        spec = (self._cruise_256, self._goal)
+        way = AxisWay(before, after, arguments, result, spec, self._height)
+        self._show_all(AXIS_CLAIMS[kind](way))
+
+    def _split(self) -> None:
+        """
+        Let each way have known modes, and levels of a known length: that is far easier to prove.
+        """
+        memory, own = self._machine.memory, f"{self.motor}Motion"
+        mode, length = (memory.read((own, name)) for name in ("mode", "length"))
+        known = [mode & bit != 0 for bit in (RUNNING, CLIMB, DESCEND)]
+        bits = [self.paths.decide(one) for one in known]
+        mode = _with_bits(mode, *bits)
+        self._split_values: dict[Place, Any] = {(own, "mode"): mode}
+        if bits[0]:
+            self._split_values[own, "length"] = self._one_of(length)
+        for place, value in self._split_values.items():
+            memory.write(place, value)
+
+    def _interrupted(self, entered: AxisState, *, late: bool) -> AxisState:
+        """
+        Return what was before the step interrupt that goes on to its rare ways as *entered*.
+        """
+        if late:
+            self.paths.assume(entered.is_in(RUNNING))
+            return entered
+        self.paths.assume(entered.count == 0)
+        self.paths.assume(entered.is_in(RUNNING | COAST))
+        self.paths.assume(z3.Or(entered.of("lapsLeft") != 0, entered.of("levels") == 0))
+        values = {**entered.values, entered.count_place: z3.BitVecVal(1, 8)}
+        return replace(entered, values=values)
+
+    def _from_reset(self, before: AxisState) -> None:
+        """
+        Show that the invariant holds after reset, where RAM is 0; of registers nothing is known.
+        """
+        zeros = {place: value & 0 for place, value in before.values.items()}
+        for says, claim in invariant(replace(before, values=zeros)).items():
+            self.paths.prove(claim, says, "after reset")
+        registers = set(GENERAL_PURPOSE.values())
+        others = {
+            place: z3.BitVec("at reset", 8) if place[0] in registers else value
+            for place, value in before.values.items()
+        }
+        self._assume(replace(before, values=others))
+
+    def _part(self, part: Part) -> None:
+        before = self._state()
+        for _, claim in part.needs(before):
+            self.paths.assume(claim)
+        for fact in self._facts(before):
+            self.paths.assume(fact)
+        self._machine.call(self.name)
+        after = self._state()
+        here, there = (before.of("row"), before.of("rung")), after.of("row")
+        for level in (after.level, after.of("rung")):
+            for pair in ((here, (there, level)), ((there, level), here)):
+                for fact in self._ramp.facts_of_two(*pair):
+                    self.paths.assume(fact)
+        for fact in self._facts(after):
+            self.paths.assume(fact)
+        self._show_all(part.gives(before, after))
+
+    def _known(self, name: str, part: Part) -> None:
+        """
+        Stand for *part*: show what it needs, and assume what it gives.
+        """
+        before, memory = self._state(), self._machine.memory
+        for fact in self._facts(before):
+            self.paths.assume(fact)
+        self._show_all(part.needs(before))
+        self._calls += 1
+        for one in part.changes:
+            place = before.count_place if one == "count" else (f"{self.motor}Motion", one)
+            unknown = z3.BitVec(f"{one} after {name} {self._calls}", before.values[place].size())
+            memory.write(place, unknown)
+        for _, claim in part.gives(before, self._state()):
+            self.paths.assume(claim)
+        if "mode" in part.changes:
+            mode = memory.read((f"{self.motor}Motion", "mode"))
+            bits = [self.paths.decide(mode & bit != 0) for bit in (RUNNING, CLIMB, DESCEND)]
+            memory.write((f"{self.motor}Motion", "mode"), _with_bits(mode, *bits))
+
+    def _row(self, pointer: Pointer) -> dict[tuple[str, ...], Any]:
+        at = z3.BitVecVal(0, 16) if pointer.element is None else pointer.element
+        number = z3.simplify(z3.UDiv(at, z3.BitVecVal(_ROW_BYTES, 16)))
+        self._show("the beginning of a row", z3.URem(at, _ROW_BYTES) == 0)
+        self._show("a row of the ramp", z3.ULT(number, self._ramp.rows))
+        row = z3.simplify(z3.Extract(7, 0, number))
+        for fact in self._ramp.facts_of_row(row):
+            self.paths.assume(fact)
+        return row_of(self._ramp, row, self._ramp.steps(row))
+
+    def _one_of(self, length: Any) -> Any:  # noqa: ANN401 - z3 has no types
+        """
+        Return *length* as a number: each way goes on with one of those that a level can have.
+        """
+        for known in LENGTHS[:-1]:
+            if self.paths.decide(length == known):
+                return z3.BitVecVal(known, 8)
+        return z3.BitVecVal(LENGTHS[-1], 8)
+
+    def _read_row(self) -> None:
+        """
+        Show that what is read of each row is what the reference model has there.
+        """
+        number = z3.BitVec("row", 16)
+        self.paths.inputs = {"row": number}
+        self.paths.assume(z3.ULT(number, self._ramp.rows))
+        read = self._machine.call("readRow", Pointer((f"{self.motor}Ramp",), number * _ROW_BYTES))
+        for name, value in self._ramp.entries(z3.Extract(7, 0, number)):
+            self._show(f"{name} as the model has it", read[(name,)] == value)
+
+    def _whole_levels(self, steps: Any, row: Pointer) -> Any:  # noqa: ANN401 - z3 has no types
+        length = self._machine.memory.read((*row.place, "steps"))
+        levels = whole_levels(steps, length)
+        parts = z3.ZeroExt(16, levels) * z3.ZeroExt(24, length)
+        self.paths.assume(_fills(z3.ZeroExt(16, steps), parts, length))
+        return levels
+
+    def _levels_in(self) -> None:
+        """
+        Show that no other number of whole levels is in so many steps, for each length of a level.
+        """
+        steps, shift = z3.BitVec("steps", 16), z3.BitVec("shift", 8)
+        self.paths.inputs = {"steps": steps, "shift": shift}
+        self.paths.assume(z3.ULT(shift, 8))
+        length = self._one_of(z3.BitVecVal(1, 8) << shift).as_long()
+        memory, place = self._machine.memory, ("a row",)
+        memory.declare(place, "Row")
+        memory.write((*place, "steps"), z3.BitVecVal(length, 8))
+        memory.write((*place, "share"), z3.simplify(share_of(z3.BitVecVal(length, 8))))
+        result = self._machine.call("levelsIn", steps, Pointer(place))
+        self._show("the whole levels", result == whole_levels(steps, z3.BitVecVal(length, 8)))
+        parts = z3.ZeroExt(16, result) * length
+        fills = _fills(z3.ZeroExt(16, steps), parts, z3.BitVecVal(length, 8))
+        self._show("they leave less than a level", fills)
+
+    def _height_for(self) -> None:
+        """
+        Show that the height is that of the last level whose interval is as long.
+        """
+        interval = z3.BitVec("interval", 32)
+        self.paths.inputs = {"interval": interval}
+        self.paths.assume(z3.UGE(interval, self._cruise_256))
+        result = z3.simplify(self._machine.call(self.name, interval))
+        levels = self._ramp.ladder.levels
+        at = {level.height: number for number, level in enumerate(levels)}
+        number = at.get(result.as_long()) if z3.is_bv_value(result) else None
+        self._show("the height is that of a level", z3.BoolVal(number is not None))
+        if number is not None:
+            self._show_all(_is_goal(levels, number, interval))
+
+    def _by_itself(self) -> None:
+        self._assume(self._state())
+        self._split()
+        before = self._state()
+        for after, when in goes_on(before):
+            for fact in self._facts(after):
+                self.paths.assume(fact)
+            for says, claim in invariant(after).items():
+                self._show(says, z3.Implies(when, claim))
+            step = after.left == before.left - 1
+            self._show("a step less is left", z3.Implies(when, step))
+
+    def _named(self, value: Any) -> Any:  # noqa: ANN401 - z3 has no types
+        """
+        Return a name for *value*, unless it is known: what is said of names is short, and z3 fast.
+        """
+        value = z3.simplify(value)
+        if z3.is_bv_value(value) or z3.is_const(value):
+            return value
+        known = self._names.get(value.get_id())
+        if known:
+            return known[1]
+        self._calls += 1
+        name = z3.BitVec(f"result {self._calls}", value.size())
+        self.paths.assume(name == value)
+        self._names[value.get_id()] = value, name
+        return name
+
+    def _state(self) -> AxisState:
+        values = self._machine.memory.snapshot()
+        return AxisState(values, self.library.source, self.motor, self._ramp, self._named)
+
+    def _facts(self, state: AxisState) -> Iterator[Any]:
+        yield from facts(state)
+
+    def _assume(self, state: AxisState) -> None:
+        for claim in [*invariant(state).values(), *self._facts(state)]:
+            self.paths.assume(claim)
+
+    def _keeps(self) -> AxisState:
+        after = self._state()
+        for fact in self._facts(after):
+            self.paths.assume(fact)
+        self._show_all(iter(invariant(after).items()))
+        return after
+
+    def _show_all(self, claims: Iterator[tuple[str, Any]]) -> None:
+        for says, claim in claims:
+            self._show(says, claim)
+
+    def _show(self, says: str, claim: Any) -> None:  # noqa: ANN401 - z3 has no types
+        self.paths.prove(claim, says, self.name)
+
+
+def _with_bits(mode: Any, *known: bool) -> Any:  # noqa: ANN401 - z3 has no types
+    """
+    Return *mode* with the bits kRunning, kClimb and kDescend as they are known to be.
+    """
+    running, climb, descend = (z3.BitVecVal(bit, 1) for bit in known)
+    return z3.Concat(z3.Extract(7, 7, mode), descend, climb, running, z3.Extract(3, 0, mode))
+
+
+def _fills(steps: Any, parts: Any, length: Any) -> Any:  # noqa: ANN401
+    return z3.And(z3.ULE(parts, steps), z3.ULT(steps - parts, z3.ZeroExt(24, length)))
+
+
+def _is_goal(levels: Any, number: int, interval: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
+    if number:
+        yield "that level is not faster", z3.ULE(interval, levels[number].interval_256)
+    if number + 1 < len(levels):
+        yield "the next one is", z3.UGT(interval, levels[number + 1].interval_256)
