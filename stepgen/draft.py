@@ -82,7 +82,9 @@ class Draft:
         timing = {"kind": self.timing} | ({} if self.timer is None else {"timer": self.timer})
         yield "drive", self.drive if not self.drive_fields else drive, "how it is wired"
         yield "timing", self.timing if self.timer is None else timing, "what paces its steps"
-        yield "motion", self.motion, _first_sentence(_kind(MOTIONS, self.motion))
+        kind = _kind(MOTIONS, self.motion)
+        motion = {"kind": self.motion, **kind.first} if kind.first else self.motion
+        yield "motion", motion, _first_sentence(kind)
         if self.steps_per_turn is not None:
             yield "steps_per_turn", self.steps_per_turn, "full steps in one turn of the shaft"
         yield "at_rest", self.at_rest, "what the coils do after a motion with an end"

@@ -3,8 +3,9 @@ What all parts of a spec have in common: strict models, and kinds found by their
 """
 
 import pkgutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
+from types import MappingProxyType
 from typing import Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict
@@ -27,10 +28,11 @@ class KindModel(SpecModel):
     One kind of drive, timing or motion; subclasses pin ``kind`` to their own name.
 
     *asked* are fields of which some are needed though each has a default: a first spec asks for
-    them too.
+    them too. *first* is what a first spec has in fields that need a value, to be changed.
     """
 
     asked: ClassVar[tuple[str, ...]] = ()
+    first: ClassVar[Mapping[str, int]] = MappingProxyType({})
     kind: str
 
 

@@ -48,6 +48,22 @@ def test_options_say_what_the_spec_holds(stepgen: Stepgen, tmp_path: Path) -> No
     assert not motor.releases_at_rest
 
 
+def test_a_motor_with_ramps_gets_a_channel_and_speeds_to_change(
+    stepgen: Stepgen, tmp_path: Path
+) -> None:
+    """
+    Where no timer is asked for it is one that the motion can run on, though others are first.
+    """
+    run = stepgen("init", "slide.yaml", "--motion", "trapezoid")
+
+    assert run.code == 0, run.err
+    (motor,) = api.plan(tmp_path / "slide.yaml").motors
+    assert (motor.motion.kind, motor.timing.kind, motor.timing.channel) == (
+        *("trapezoid", "compare", "A"),
+    )
+    assert motor.wish_steps_per_second == 1000
+
+
 def test_every_line_has_a_comment_and_stays_short(stepgen: Stepgen, tmp_path: Path) -> None:
     """
     A newcomer reads in the file what each line is for.

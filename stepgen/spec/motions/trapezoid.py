@@ -2,7 +2,9 @@
 Trapezoid: each move speeds up, cruises and slows down, with the functions of an axis.
 """
 
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -14,9 +16,12 @@ MOST_QUEUED = 16
 
 class Trapezoid(KindModel):
     """
-    Motion ``trapezoid``: moves to positions, with ramps that are known to the clock.
+    Motion ``trapezoid``: moves to positions, with ramps.
     """
 
+    first: ClassVar[Mapping[str, int]] = MappingProxyType(
+        {"cruise_speed": 1000, "acceleration": 2000}
+    )
     kind: Literal["trapezoid"] = "trapezoid"
     cruise_speed: Ratio
     """The highest speed in steps per second, and the one that holds until the sketch sets one."""
