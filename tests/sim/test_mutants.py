@@ -513,7 +513,7 @@ MUTANTS = (
     ),
     Mutant(
         "a stop that stops the other motor of the timer (16 bits)",
-        "timings/wide_compare.j2",
+        "macros/channel.j2",
         "{{ timer.timsk }} &= ~_BV({{ timer.ocie }});",
         "{{ timer.timsk }} = 0;",
         check="all motors at once",
@@ -540,7 +540,7 @@ MUTANTS = (
     ),
     Mutant(
         "a match that is served twice: by its flag, and at once (16 bits)",
-        "timings/wide_compare.j2",
+        "macros/channel.j2",
         " || ({{ timer.tifr }} & _BV({{ timer.ocf }}))",
         "",
         check="left: interrupts held up for many lengths",
@@ -549,7 +549,7 @@ MUTANTS = (
     ),
     Mutant(
         "a count of missed steps that an init leaves (16 bits)",
-        "timings/wide_compare.j2",
+        "macros/channel.j2",
         "motion.missed = 0;",
         "",
         check="left: interrupts held up very often",
