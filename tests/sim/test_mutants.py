@@ -659,8 +659,8 @@ AXIS_MUTANTS = (
     Mutant(
         "a ramp without room to come down",
         "motions/trapezoid.j2",
-        "if (room / 2 < climb) climb = room / 2;",
-        "if (room < climb) climb = room;",
+        "if (room / 2 < way) way = room / 2;",
+        "if (room < way) way = room;",
         check="slide: short moves both ways",
         finding="slide: ",
         spec="uno_trapezoid",
