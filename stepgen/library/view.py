@@ -64,6 +64,7 @@ class LibraryView:
     control_bits: tuple[Definition, ...]
     status_bits: tuple[Definition, ...]
     codes: tuple[Definition, ...]
+    results: str
     constants: tuple[Named, ...]
     calls_comment: tuple[str, ...]
     motion_names: tuple[str, ...]
@@ -118,6 +119,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         control_bits=control_bits(plan),
         status_bits=status_bits(plan),
         codes=codes(plan),
+        results=_results(plan),
         constants=_constants(plan),
         calls_comment=calls_comment(plan),
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
@@ -142,6 +144,14 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         held_rows=tuple(held_rows(plan)),
         lateness=lateness(plan),
     )
+
+
+def _results(plan: Plan) -> str:
+    """
+    Return what the results of functions mean; of warnings only where there are some.
+    """
+    warns = ", above 0 a warning" if "motor" in api_names(plan) else ""
+    return f"What the functions return: 0 is fine, below 0 refused and nothing changed{warns}."
 
 
 def _motion_structs(motors: tuple[MotorView, ...]) -> tuple[MotionStruct, ...]:

@@ -1,8 +1,8 @@
 """
-More flash or RAM than the board has: no spec can demand it today, and what would is refused.
+More flash or RAM than the board has: few specs can demand it, and what does is refused.
 
 What a spec can ask for at most is bounded by the chip's timers and their compare channels, a motor
-each, and by tables of 256 bytes: `stepgen check` has nothing to refuse. The sizes are still
+each, and by tables of 256 bytes: without ramps `stepgen check` has nothing to refuse. The sizes are
 compared with the board's whenever something is compiled.
 """
 
@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 
 from stepgen.cli import app
 from stepgen.devices import Board, Timer16, boards
+from stepgen.errors import StepgenError
 from stepgen.verify import arduino_core
 from stepgen.verify.recipes import board_properties
 from stepgen.verify.toolchain import Target, default_compiler
@@ -111,3 +112,23 @@ def test_what_does_not_fit_is_refused_in_words(
     assert f"bytes of {what} with its library, and arduino:avr:uno has 100; give" in words
     assert "Traceback" not in words
     assert [path.name for path in tmp_path.iterdir()] == ["cache"]
+
+
+def test_axes_that_do_not_fit_are_refused_in_words(tmp_path: Path) -> None:
+    """
+    Six axes with every function in use are more than a Leonardo has flash; the message says so.
+    """
+    lines = ["library: Largest\nboard: leonardo\nmotors:"]
+    channels = ((timer, channel) for timer in (1, 3) for channel in "ABC")
+    for number, (timer, channel) in enumerate(channels):
+        lines.append(
+            f"  axis{number}: {{drive: {{kind: step-dir, step: D{2 * number + 2}, "
+            f"dir: D{2 * number + 3}, driver: a4988}}, timing: {{kind: compare, timer: {timer}, "
+            f"channel: {channel}}}, motion: {{kind: trapezoid, cruise_speed: 300, "
+            "acceleration: 100, queue: 16}, at_rest: hold}"
+        )
+    path = tmp_path / "largest.yaml"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    with pytest.raises(StepgenError, match=r"bytes of flash with its library, and .* has 28672"):
+        everything_in_use(path, default_compiler(), tmp_path)
