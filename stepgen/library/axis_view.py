@@ -8,7 +8,7 @@ from stepgen.library.prose import axis_start_comment
 from stepgen.library.sharing import Need
 from stepgen.library.text import comment_lines
 from stepgen.plan.ladder import FRACTION, Row
-from stepgen.plan.model import MotorPlan
+from stepgen.plan.model import MotorPlan, Plan
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,7 @@ class AxisView:
     cruise_interval: str
     cruise_height: str
     cruise_text: str
+    ramp: str
     rows: tuple[str, ...]
     row_count: str
     ramp_comment: tuple[str, ...]
@@ -31,16 +32,30 @@ class AxisView:
     queue_comment: str
 
 
-def axis_view(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> AxisView | None:
+def axis_view(motor: MotorPlan, need: Need | None, plan: Plan) -> AxisView | None:
     """
-    Return what the templates print of the ramp of *motor*; None if it has none.
+    Return what the templates print of the ramp of *motor* of *plan*; None if it has none.
+
+    Motors whose rows are the same use the table of the first of them.
     """
     ladder = motor.motion.ladder
     if ladder is None:
         return None
+    f_cpu_hz = plan.board.f_cpu_hz
+    owner = next(
+        other.name
+        for other in plan.motors
+        if other.motion.ladder and other.motion.ladder.rows == ladder.rows
+    )
     cruise = motor.motion.cruise_interval_256
     cruise_sps = f_cpu_hz * FRACTION / cruise
     goal = ladder.goal(cruise)
+    rows = f", as {owner}'s."
+    if owner == motor.name:
+        rows = (
+            ". Row by row from the lowest speed on: the levels, the steps of each and how much "
+            "shorter the interval is from one to the next."
+        )
     start = f"{float(ladder.start_sps):g}" if ladder.start_sps else "0"
     return AxisView(
         prefix=f"k{motor.name[0].upper()}{motor.name[1:]}",
@@ -49,12 +64,12 @@ def axis_view(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> AxisView | 
         cruise_interval=f"{cruise}UL",
         cruise_height=str(goal),
         cruise_text=f"{cruise_sps:.6g} steps/s",
-        rows=tuple(_row(row) for row in ladder.rows),
+        ramp=f"{owner}Ramp",
+        rows=tuple(_row(row) for row in ladder.rows) if owner == motor.name else (),
         row_count=str(len(ladder.rows)),
         ramp_comment=comment_lines(
             f"From {start} to {cruise_sps:.6g} steps/s at {float(ladder.acceleration):g} "
-            f"steps/s^2: {goal} steps. Row by row from the lowest speed on: the levels, the "
-            "steps of each and how much shorter the interval is from one to the next."
+            f"steps/s^2: {goal} steps{rows}"
         ),
         start_comment=axis_start_comment(motor, need, f_cpu_hz),
         halt_comment=" The coils go off." if motor.releases_at_rest else "",

@@ -124,7 +124,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         name=motor.name,
         title=motor.name[0].upper() + motor.name[1:],
         init=init_name(motor),
-        axis=axis_view(motor, need, board.f_cpu_hz),
+        axis=axis_view(motor, need, plan),
         summary=summary(motor),
         wiring=(*wiring(motor, board), *comment_lines(sharing_note(motor, need, plan))),
         init_comment=init_comment(motor),

@@ -19,6 +19,8 @@ from stepgen.plan.wide_gate import channel_registers, laps, passed
 _VECTOR_JUMP_CYCLES = 3  # the JMP in the vector table
 _NO_LAPS_CYCLES = 9  # LDS, TST, BRNE, LDS, TST, BREQ that branches
 _HANDLER_CYCLES = 60  # to move the compare register, to look if that was too late, to count that
+_SOON_TICKS = 32  # more than it takes from a look at the counter to a compare
+_BACK_CYCLES = 2  # the RJMP from a level's beginning to the usual way
 
 
 def ladder_gate(timing: TimerPlan, storage: Storage) -> Gate:
@@ -28,11 +30,12 @@ def ladder_gate(timing: TimerPlan, storage: Storage) -> Gate:
     return Gate(
         boundary=laps(),
         advance=_advance(),
-        check=(*passed(), Instruction("pop   r25", 2), Instruction("brpl  13f", 1)),
+        check=(*passed(), Instruction("brpl  13f", 1)),
         go_on=_next_level(storage),
         handler_cycles=_HANDLER_CYCLES,
         tells_missed=True,
-        registers=channel_registers(timing),
+        registers=(*channel_registers(timing), ("tifr", timing.timer.tifr)),
+        constants=(("ocf", f"OCF{timing.timer.number}{timing.channel}"),),
         fields=(
             ("due", "due"),
             ("fraction", "dueFraction"),
@@ -41,6 +44,7 @@ def ladder_gate(timing: TimerPlan, storage: Storage) -> Gate:
             ("levels", "levels"),
             ("change", "change"),
             ("length", "length"),
+            ("missed", "missed"),
         ),
     )
 
@@ -97,6 +101,28 @@ def _next_level(storage: Storage) -> tuple[Instruction, ...]:
     )
 
 
+def _at_once() -> tuple[Instruction, ...]:
+    """
+    Return what has the next step made at once, since its moment has passed without a flag.
+    """
+    return (
+        Instruction("sbic  %[tifr], %[ocf]", 1, "a match meanwhile is that step", label="18"),
+        Instruction("rjmp  12b", 2),
+        Instruction("lds   r24, %[tcntLow]", 2, "else there will be one at once"),
+        Instruction("lds   r25, %[tcntHigh]", 2),
+        Instruction(f"subi  r24, lo8(-{_SOON_TICKS})", 1),
+        Instruction(f"sbci  r25, hi8(-{_SOON_TICKS})", 1),
+        Instruction("sts   %[ocrHigh], r25", 2),
+        Instruction("sts   %[ocrLow], r24", 2),
+        Instruction("lds   r24, %[missed]", 2, "and it is counted"),
+        Instruction("lds   r25, %[missed] + 1", 2),
+        Instruction("adiw  r24, 1", 2),
+        Instruction("sts   %[missed], r24", 2),
+        Instruction("sts   %[missed] + 1, r25", 2),
+        Instruction("rjmp  12b", 2),
+    )
+
+
 def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gate: Gate) -> HotPath:
     """
     Return the step interrupt of *kernel*; its rare ways go on in the function *handler*.
@@ -118,11 +144,12 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         Instruction("out   %[sreg], r24", 1),
         Instruction("pop   r24", 2),
     )
-    punctual = (*gate.advance, *gate.check)
-    reti = Instruction("reti", mcu.response_cycles)
-    ending = end_code(kernel, leave, 2 + total_cycles(punctual))
-    late = (replace(ending[0], label="13"), *ending[1:], Instruction(f"jmp   {handler}_late", 3))
-    usual_way = (*step, *punctual, *ending, reti)
+    punctual = (replace(gate.advance[0], label="11"), *gate.advance[1:], *gate.check)
+    restore = (Instruction("pop   r25", 2), *leave)
+    first, *others = end_code(kernel, restore, 2 + total_cycles(punctual))  # 2 for the PUSH
+    usual_end = (replace(first, label="12"), *others, Instruction("reti", mcu.response_cycles))
+    usual_way = (*step, *punctual, *usual_end)
+    late = (Instruction("rjmp  18f", 2, label="13"),)
     count = (
         storage.count.load("r24", "count"),
         Instruction("dec   r24", 1, "one step less of this level"),
@@ -136,32 +163,19 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         *more_laps,
         *step,
         *gate.go_on,
-        *end_code(kernel, (), 2 + total_cycles(gate.go_on)),
-        *gate.advance,
-        *_renamed(gate.check, "13f", "14f"),
-        *leave,
-        reti,
-        replace(leave[0], label="14"),
-        *leave[1:],
-        Instruction(f"jmp   {handler}_late", 3),
+        Instruction("rjmp  11b", _BACK_CYCLES, "the rest is as usual"),
         Instruction("pop   r25", 2, label="16"),
         *end_code(kernel, (), sum(decide) + 2),
         replace(leave[0], label="2"),
         *leave[1:],
         Instruction(f"jmp   {handler}", 3),
+        *_at_once(),
     )
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
     until_step = arrival + total_cycles((*entry, *count))
     until_rare_step = until_step + 1 + _NO_LAPS_CYCLES
     usual_cycles = until_step + total_cycles(usual_way)
-    next_level = (
-        *step,
-        *gate.go_on,
-        *end_code(kernel, (), 2 + total_cycles(gate.go_on)),
-        *punctual,
-        *leave,
-        reti,
-    )
+    next_level = (*step, *gate.go_on, *punctual, *usual_end)
     tail = total_cycles((*end_code(kernel, (), sum(decide) + 2), *leave)) + 3
     to_handler = until_rare_step + total_cycles(step) + sum(decide[1:]) + 2 + tail
     return HotPath(
@@ -170,7 +184,7 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         clock=(),
         late=late,
         usual_cycles=usual_cycles,
-        recurring_cycles=until_rare_step + total_cycles(next_level),
+        recurring_cycles=until_rare_step + total_cycles(next_level) + _BACK_CYCLES,
         lap_cycles=(),
         overrun_cycles=None,
         clock_cycles=usual_cycles,
@@ -179,12 +193,3 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         boundary_entry_cycles=to_handler,
         think_entry_cycles=to_handler,
     )
-
-
-def _renamed(
-    instructions: tuple[Instruction, ...], label: str, other: str
-) -> tuple[Instruction, ...]:
-    """
-    Return *instructions* with branches to *other* in place of *label*.
-    """
-    return tuple(replace(one, text=one.text.replace(label, other)) for one in instructions)

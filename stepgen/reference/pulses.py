@@ -15,6 +15,8 @@ from stepgen.reference.sequences import Pattern
 _LONGER_CYCLES = 16
 # On a 16-bit timer that runs through it reads and writes the timer meanwhile.
 _LONGER_AT_COMPARE_CYCLES = 48
+# That of an axis may begin a level, 43 cycles, and set the timer once more for a late step, 25.
+_LONGER_ON_A_RAMP_CYCLES = _LONGER_AT_COMPARE_CYCLES + 68
 _NS_IN_A_SECOND = 1_000_000_000
 # The first interval is cut off to a whole tick, and can be one tick short: 1024 cycles each.
 _WAKE_MARGIN_CYCLES = 2048
@@ -61,13 +63,14 @@ class PulseFacts:
             return Pattern((False, False), (True, False))
         return Pattern((False, False, not self.enabled_level), (True, False, True))
 
-    def with_timing(self, timing: str) -> Self:
+    def with_timing(self, timing: str, *, has_ramps: bool) -> Self:
         """
         Return the same for a motor of that *timing*, whose interrupt may do more within a pulse.
         """
         if timing != "wide-compare":
             return self
-        return replace(self, longest_high=self.high + _LONGER_AT_COMPARE_CYCLES)
+        longer = _LONGER_ON_A_RAMP_CYCLES if has_ramps else _LONGER_AT_COMPARE_CYCLES
+        return replace(self, longest_high=self.high + longer)
 
     def wake_cycles(self, timing: str) -> int:
         """

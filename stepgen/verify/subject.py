@@ -117,7 +117,8 @@ def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:
         shared = tuple(bit for bit in drive.wires if users[bit] > 1)
         channel = compare_channel(planned.timing)
         timing = _timing(motors[name], channel)
-        pulse = drive.pulse and drive.pulse.with_timing(timing)
+        has_ramps = planned.motion.ladder is not None
+        pulse = drive.pulse and drive.pulse.with_timing(timing, has_ramps=has_ramps)
         drive = replace(drive, pulse=pulse)
         facts = _facts(motors[name], drive, plan, timing, shares_enables=bool(shared))
         facts = _with_ladder(facts, planned)

@@ -15,6 +15,8 @@ from stepgen.verify.events import Events, Kind
 _CLOCK_SELECT = 0b111
 _SKETCH_VECTOR = "TIMER0_COMPA_vect"  # where the bench makes the calls of `Context.INTERRUPT`
 _COUNTER_STATES = 1 << 16
+_FRAME_CYCLES = 2
+"""Interrupts are off so long where the compiler moves the stack pointer; in the library, longer."""
 
 
 @dataclass(frozen=True)
@@ -108,8 +110,8 @@ class Trace:
             cycles, values = self._held[state.port]
             cycles.append(state.cycle)
             values.append(state.value)
-        self.masked = [int(row["cycle"]) for row in self._of(Kind.MASKED)]
         self.unmasked = [int(row["cycle"]) for row in self._of(Kind.UNMASKED)]
+        self.masked = self._sections([int(row["cycle"]) for row in self._of(Kind.MASKED)])
 
     def _of(self, kind: Kind, source: int | None = None) -> Events:
         chosen = self.events["kind"] == kind
@@ -134,6 +136,17 @@ class Trace:
         return [
             Run(since, max(since, until), entered, left, self._writes(entered, left))
             for since, until, entered, left in rows
+        ]
+
+    def _sections(self, masked: Sequence[int]) -> list[int]:
+        """
+        Return those of *masked*, where interrupts go off, that are no move of the stack pointer.
+        """
+        places = [bisect_left(self.unmasked, start) for start in masked]
+        return [
+            start
+            for start, place in zip(masked, places, strict=True)
+            if place == len(self.unmasked) or self.unmasked[place] - start > _FRAME_CYCLES
         ]
 
     def _writes(self, first: int, last: int) -> tuple[PortState, ...]:

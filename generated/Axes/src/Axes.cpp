@@ -52,17 +52,14 @@ struct AxisMotion {
   uint32_t interval;  // the one in use
   uint32_t change;  // what the interrupt adds to it for the next level
   uint8_t length;  // steps of a level
-  uint8_t levels;  // levels that the interrupt will begin by itself,
-  uint8_t planned;  // and how many these were at first
+  uint8_t levels;  // levels that the interrupt will begin by itself
   uint32_t rest;  // steps of this way after those levels
   uint32_t end;  // the position when all are made
   uint32_t destination;  // where to go in the end
-  uint32_t origin;  // the position that the sketch calls 0
-  uint8_t row;  // where it is on the ramp: the row,
+  uint8_t row;  // where it is on the ramp, or will be after those levels: the row,
   uint8_t rung;  // the level in it,
-  uint8_t rungs;  // of so many,
   uint16_t height;  // how many steps it takes from there to rest,
-  uint32_t pace;  // and the interval there
+  uint32_t pace;  // and the interval there, once they are made
   uint16_t goal;  // how high it may climb, in steps,
   uint32_t cruise;  // and the interval there
   uint8_t dueFraction;  // when the next interrupt is due: 1/256 clocks,
@@ -71,41 +68,294 @@ struct AxisMotion {
   uint16_t missed;  // steps that were due before the step before was made
 };
 
-// A row of a ramp: levels of equal length, whose intervals differ by the same slope.
-struct Row {
-  uint8_t levels;
-  uint8_t steps;  // of a level: a power of two
-  uint8_t share;  // 256 / steps, which is 0 for 256
-  uint32_t slope;  // in 1/256 clocks
-};
-
-// Rows in flash: the levels; the shift in the lower bits, and in the upper ones by how many bytes
-// the slope is shifted; the slope.
-struct PackedRow {
-  uint8_t levels;
-  uint8_t shifts;
-  uint16_t slope;
-};
-
-static const uint8_t kPowers[] PROGMEM = {1, 2, 4, 8, 16, 32, 64, 128, 0};
-
-INLINE Row readRow(const PackedRow *packed) {
-  const uint8_t shifts = pgm_read_byte(&packed->shifts);
-  uint32_t slope = pgm_read_word(&packed->slope);
-  if (shifts & 0x10) slope <<= 8;
-  if (shifts & 0x20) slope <<= 16;
-  const uint8_t *power = kPowers + (shifts & 0x0F);
-  const uint8_t *share = kPowers + 8 - (shifts & 0x0F);
-  return {pgm_read_byte(&packed->levels), pgm_read_byte(power), pgm_read_byte(share), slope};
+// When the channel is to match next: one interval after it was last due; a long one begins with
+// 16384 to 32767 clocks, and laps follow. Only while interrupts are off.
+SHARED uint16_t nextDue(AxisMotion &axis) {
+  auto &motion = near(axis);
+  const uint32_t interval = motion.interval;
+  uint16_t ticks = interval >> 8;
+  uint16_t laps = 0;
+  if (interval >= kLappedInterval) {
+    const uint16_t high = interval >> 16;
+    laps = (high >> 6) - 1;
+    ticks = (ticks & (kLapTicks - 1)) | kLapTicks;
+  }
+  motion.lapsLeft = laps;
+  const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);
+  motion.dueFraction = fraction;
+  const uint16_t due = motion.due + ticks + (fraction >> 8);
+  motion.due = due;
+  return due;
 }
 
-// How many whole levels of a row so many steps are.
-INLINE uint16_t levelsIn(uint16_t steps, const Row &row) {
-  return row.share ? static_cast<uint32_t>(steps) * row.share >> 8 : steps;
+// A row of a ramp in flash: levels of equal length, whose intervals differ by the same slope.
+struct Row {
+  uint8_t levels;
+  uint8_t shifts;  // steps of a level: 1 << bits 0 to 2; bytes to shift the slope by: bits 4 and 5
+  uint16_t slope;  // in 1/256 clocks
+};
+
+static const uint8_t kPowers[] PROGMEM = {1, 2, 4, 8, 16, 32, 64, 128};
+
+// Steps of a level.
+INLINE uint8_t stepsOf(uint8_t shifts) { return pgm_read_byte(kPowers + (shifts & 7)); }
+
+// How many whole levels so many steps are.
+INLINE uint16_t levelsIn(uint16_t steps, uint8_t shifts) {
+  if (shifts & 1) steps >>= 1;
+  if (shifts & 2) steps >>= 2;
+  if (shifts & 4) steps >>= 4;
+  return steps;
+}
+
+INLINE uint32_t slopeOf(const Row *row, uint8_t shifts) {
+  uint32_t slope = pgm_read_word(&row->slope);
+  if (shifts & 0x10) slope <<= 8;
+  if (shifts & 0x20) slope <<= 16;
+  return slope;
 }
 
 constexpr uint32_t kFar = 1UL << 30;  // steps ahead of a motor that runs without an end
 constexpr uint8_t kFlatSteps = 128;  // a level of constant speed
+
+// What follows is the same for each motor with ramps. It works only while interrupts are off, and
+// what it calls count is the steps that are left of the present level, which the motor keeps.
+
+// Steps that are left of this way.
+INLINE uint32_t stepsLeft(const AxisMotion &motion, uint8_t count) {
+  const uint16_t steps = motion.levels * motion.length;
+  return motion.rest + static_cast<uint16_t>(steps + count);
+}
+
+// Where the motor is: the end of its way less what is left.
+SHARED uint32_t positionOf(AxisMotion &axis, uint8_t count) {
+  auto &motion = near(axis);
+  const uint32_t left = stepsLeft(motion, count);
+  return motion.mode & kReverse ? motion.end + left : motion.end - left;
+}
+
+// Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
+// It climbs while there is room to come down again, so it never has to know how a way goes on.
+// Returns the steps of the first level.
+SHARED uint8_t decide(AxisMotion &axis, const Row *ramp) {
+  auto &motion = near(axis);
+  uint16_t height = motion.height;
+  const uint16_t goal = motion.goal;
+  const uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
+  const uint16_t room = slack > 0x7FFF ? 0x8000 : slack;
+  const Row *row = ramp + motion.row;
+  uint8_t rung = motion.rung;
+  uint8_t rungs = pgm_read_byte(&row->levels);
+  uint16_t way = 0;  // steps down or up
+  uint8_t mode = 0;
+  if (room == 0 || height > goal) {
+    mode = kDescend;
+    way = room ? height - goal : 0xFFFF;
+    if (rung == 0) {
+      --motion.row;
+      --row;
+      rung = pgm_read_byte(&row->levels);
+    }
+  } else if (height < goal) {
+    mode = kClimb;
+    way = goal - height;
+    if (room / 2 < way) way = room / 2;
+    if (rung == rungs) {
+      ++motion.row;
+      ++row;
+      rungs = pgm_read_byte(&row->levels);
+      rung = 0;
+    }
+  }
+  const uint8_t shifts = pgm_read_byte(&row->shifts);
+  uint8_t length = stepsOf(shifts);
+  uint8_t first = length;
+  uint8_t levels;  // how many follow the first one
+  uint32_t change = 0;
+  uint32_t interval = motion.pace;
+  way = levelsIn(way, shifts);
+  if (way) {
+    change = slopeOf(row, shifts);
+    levels = rungs - rung - 1;
+    if (mode == kDescend) {
+      levels = rung - 1;
+      interval += change;
+    }
+    if (way <= levels) levels = way - 1;
+  } else {
+    mode = 0;
+    if (height == goal) interval = motion.cruise;
+    const uint16_t others = room - 1;
+    length = kFlatSteps;
+    first = others % kFlatSteps + 1;
+    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
+    if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
+      motion.rest += kFar;  // the end stays far away
+      motion.end += motion.mode & kReverse ? -kFar : kFar;
+    }
+  }
+  if (interval >= kLappedInterval) {  // then each step is a boundary
+    levels = 0;
+    first = 1;
+  }
+  const uint16_t steps = levels * length;
+  if (mode == kClimb) {
+    change = -change;
+    rung += levels;
+    height += steps;
+  } else if (mode) {
+    rung -= levels + 1;
+    height -= steps + length;
+  }
+  motion.mode |= mode;
+  motion.interval = interval;
+  motion.change = change;
+  motion.length = length;
+  motion.levels = levels;
+  motion.rung = rung;
+  motion.height = height;
+  motion.rest -= steps + first;
+  return first;
+}
+
+// Ends a level; tells whether more steps of the way follow.
+SHARED bool endLevel(AxisMotion &axis) {
+  auto &motion = near(axis);
+  const uint8_t mode = motion.mode;
+  if (mode & (kClimb | kDescend)) {
+    uint32_t pace = motion.interval;
+    if (mode & kClimb) {  // it is as fast as the level above now
+      pace += motion.change;
+      motion.height += motion.length;
+      ++motion.rung;
+    }
+    motion.pace = pace;
+    motion.mode = mode & ~(kClimb | kDescend);
+  }
+  return motion.rest;
+}
+
+// Begins a way from rest to the destination; tells whether there is one.
+SHARED bool setOut(AxisMotion &axis, uint32_t firstInterval) {
+  auto &motion = near(axis);
+  uint32_t way = motion.destination - motion.end;
+  if (way == 0) return false;
+  uint8_t mode = (motion.mode & kEndless) | kRunning;
+  if (way >> 31) {
+    mode |= kReverse;
+    way = -way;
+  }
+  motion.rest = way;
+  motion.end = motion.destination;
+  motion.mode = mode;
+  motion.row = 0;
+  motion.rung = 0;
+  motion.height = 0;
+  motion.pace = firstInterval;
+  return true;
+}
+
+// Lets a call in: no level follows the present one, which ends as it was; at constant speed, with
+// the next step. Returns the count; *climbs* tells whether the level goes up.
+INLINE uint8_t cut(AxisMotion &motion, uint8_t count, bool &climbs) {
+  const uint8_t mode = motion.mode;
+  const uint8_t levels = motion.levels;
+  motion.levels = 0;
+  climbs = mode & kClimb;
+  if (!(mode & (kClimb | kDescend))) return 1;
+  motion.pace = motion.interval;
+  const uint16_t steps = levels * motion.length;
+  if (climbs) {
+    motion.rung -= levels;
+    motion.height -= steps;
+    motion.mode = mode & ~kClimb;
+  } else {
+    motion.rung += levels;
+    motion.height += steps;
+  }
+  return count;
+}
+
+// Goes on from here for so many steps.
+INLINE void leave(AxisMotion &motion, uint32_t here, uint32_t steps, uint8_t count) {
+  motion.end = motion.mode & kReverse ? here - steps : here + steps;
+  motion.rest = steps - count;
+}
+
+// Has the motor move to another destination in mid-way. Returns the count.
+SHARED uint8_t redirect(AxisMotion &axis, uint8_t count, uint32_t destination, uint8_t endless) {
+  auto &motion = near(axis);
+  const uint32_t here = positionOf(motion, count);
+  motion.destination = destination;
+  bool climbs;
+  count = cut(motion, count, climbs);
+  uint8_t mode = (motion.mode & ~(kEndless | kTurning)) | endless;
+  const int32_t ahead = mode & kReverse ? here - destination : destination - here;
+  if (climbs) {
+    if (ahead >= static_cast<int32_t>(0UL + motion.height + motion.length + count)) {
+      mode |= kClimb;
+    } else {
+      count = 1;
+    }
+  }
+  uint32_t steps = 0UL + motion.height + count;  // it takes to come to rest
+  if (ahead >= static_cast<int32_t>(steps)) {
+    steps = ahead;
+  } else {
+    mode |= kTurning;
+  }
+  motion.mode = mode;
+  leave(motion, here, steps, count);
+  return count;
+}
+
+// Has the motor come to rest. Returns the count.
+SHARED uint8_t comeToRest(AxisMotion &axis, uint8_t count) {
+  auto &motion = near(axis);
+  if (!(motion.mode & kRunning)) return count;
+  count = redirect(motion, count, positionOf(motion, count), 0);
+  motion.mode &= ~kTurning;  // where it comes to rest is where it is to be
+  motion.destination = motion.end;
+  return count;
+}
+
+// How high a motor may climb for a speed: to the last level that is not faster.
+static uint16_t heightFor(const Row *ramp, uint8_t rows, uint32_t pace, uint32_t interval) {
+  uint16_t height = 0;
+  for (; rows; --rows) {
+    const uint8_t rungs = pgm_read_byte(&ramp->levels);
+    const uint8_t shifts = pgm_read_byte(&ramp->shifts);
+    const uint32_t slope = slopeOf(ramp++, shifts);
+    const uint32_t top = pace - slope * rungs;
+    if (top < interval) {  // in this row: so many of its levels
+      for (; pace - slope >= interval; pace -= slope) height += stepsOf(shifts);
+      return height;
+    }
+    height += rungs * stepsOf(shifts);
+    pace = top;
+  }
+  return height;
+}
+
+// Has the motor cruise at a speed, for which it climbs so high. Returns the count.
+static uint8_t cruiseAt(AxisMotion &axis, uint8_t count, uint32_t interval, uint16_t goal) {
+  auto &motion = near(axis);
+  motion.goal = goal;
+  motion.cruise = interval;
+  if (!(motion.mode & kRunning)) return count;
+  const uint32_t left = stepsLeft(motion, count);
+  bool climbs;
+  count = cut(motion, count, climbs);
+  if (climbs) {
+    if (goal >= motion.height + motion.length) {
+      motion.mode |= kClimb;
+    } else {
+      count = 1;
+    }
+  }
+  motion.rest = left - count;
+  return count;
+}
 
 // ---- x: A4988, 1/16 steps, timer 5 ----
 
@@ -122,7 +372,7 @@ static uint8_t xQueued;  // and how many there are
 constexpr uint32_t kXFirstInterval = 7624322UL;
 constexpr uint32_t kXCruiseInterval = 256000UL;
 constexpr uint16_t kXCruiseHeight = 3181;  // in steps
-static const PackedRow xRamp[] PROGMEM = {
+static const Row xRamp[] PROGMEM = {
     {1, 0x10, 3440},  // 1 x 1, 3440 clocks
     {1, 0x10, 2467},  // 1 x 1, 2467 clocks
     {1, 0x10, 1882},  // 1 x 1, 1882 clocks
@@ -197,18 +447,8 @@ INLINE void xCoilsOff() {
   PORTD |= 0x80;  // ENABLE
 }
 
-// Steps that are left of this way. Only while interrupts are off.
-INLINE uint32_t xLeft() {
-  auto &motion = near(xMotion);
-  return motion.rest + static_cast<uint16_t>(motion.levels * motion.length) + GPIOR1;
-}
-
-// Where the motor is: the end of its way less what is left. Only while interrupts are off.
-SHARED uint32_t xPosition() {
-  auto &motion = near(xMotion);
-  const uint32_t left = xLeft();
-  return motion.end + (motion.mode & kReverse ? left : -left);
-}
+// Where the motor is. Only while interrupts are off.
+INLINE uint32_t xPosition() { return positionOf(xMotion, GPIOR1); }
 
 // Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void xEnergise() {
@@ -229,43 +469,17 @@ INLINE bool xPassed() {
   return true;
 }
 
-// Has the channel match one interval after it was last due; a long one begins with 16384 to 32767
-// clocks, and laps follow.
-SHARED void xAdvance() {
-  auto &motion = near(xMotion);
-  const uint32_t interval = motion.interval;
-  uint16_t ticks = interval >> 8;
-  uint16_t laps = 0;
-  if (interval >= kLappedInterval) {
-    const uint16_t high = interval >> 16;
-    laps = (high >> 6) - 1;
-    ticks = (ticks & (kLapTicks - 1)) | kLapTicks;
-  }
-  motion.lapsLeft = laps;
-  const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);
-  motion.dueFraction = fraction;
-  const uint16_t due = motion.due + ticks + (fraction >> 8);
-  motion.due = due;
-  OCR5A = due;
-}
-
 // Starts the first interval from rest, which begins now.
 INLINE void xRunTimer() {
   auto &motion = near(xMotion);
   motion.dueFraction = 0;
   motion.due = TCNT5;
-  xAdvance();
+  OCR5A = nextDue(motion);
   TIFR5 = _BV(OCF5A);  // a match of before makes no step
   TIMSK5 |= _BV(OCIE5A);
 }
 
-// Where the step interrupt goes on when the next step is due already.
-extern "C" void __vector_x_boundary_late() __attribute__((signal, used, externally_visible));
-void __vector_x_boundary_late() {
-  if (xPassed()) ++xMotion.missed;
-}
-
-// Timer 5 compare match A: one step, 69 cycles from the interrupt's response to RETI; at most 1138
+// Timer 5 compare match A: one step, 69 cycles from the interrupt's response to RETI; at most 994
 // when it goes on in __vector_x_boundary. STEP rises 18 cycles after the match (28 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port F and nothing else that the sketch can see. Behind each instruction stand its cycles.
@@ -280,7 +494,7 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
       "   breq  1f                       \n"  // 1  at the end of a level
       "   sbi   %[port0], 0              \n"  // 2  STEP rises: one step
       "   push  r25                      \n"  // 2
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
+      "11: lds   r24, %[fraction]        \n"  // 2  when this step was due, and the interval
       "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
       "   add   r24, r25                 \n"  // 1
       "   sts   %[fraction], r24         \n"  // 2
@@ -300,19 +514,15 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
       "   lds   r24, %[tcntHigh]         \n"  // 2
       "   lds   r25, %[due] + 1          \n"  // 2
       "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
       "   brpl  13f                      \n"  // 1
+      "12: pop   r25                     \n"  // 2
       "   in    r24, %[scratch]          \n"  // 1
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   cbi   %[port0], 0              \n"  // 2  STEP falls
       "   reti                           \n"  // 5
 
-      "13: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   cbi   %[port0], 0              \n"  // 2  STEP falls
-      "   jmp   __vector_x_boundary_late \n"  // 3
+      "13: rjmp  18f                     \n"  // 2
 
       "1: lds   r24, %[laps]             \n"  // 2  laps of a long interval that are left?
       "   tst   r24                      \n"  // 1
@@ -342,37 +552,7 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
       "   sts   %[interval] + 2, r24     \n"  // 2
       "   lds   r24, %[length]           \n"  // 2  and lasts for so many steps
       "   out   %[count], r24            \n"  // 1
-      "   cbi   %[port0], 0              \n"  // 2  STEP falls
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
-      "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
-      "   add   r24, r25                 \n"  // 1
-      "   sts   %[fraction], r24         \n"  // 2
-      "   lds   r24, %[due]              \n"  // 2  then clocks
-      "   lds   r25, %[interval] + 1     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due], r24              \n"  // 2
-      "   lds   r24, %[due] + 1          \n"  // 2
-      "   lds   r25, %[interval] + 2     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due] + 1, r24          \n"  // 2
-      "   sts   %[ocrHigh], r24          \n"  // 2  waits in TEMP
-      "   lds   r25, %[due]              \n"  // 2
-      "   sts   %[ocrLow], r25           \n"  // 2  the next match is the next step
-      "   lds   r24, %[tcntLow]          \n"  // 2
-      "   sub   r24, r25                 \n"  // 1
-      "   lds   r24, %[tcntHigh]         \n"  // 2
-      "   lds   r25, %[due] + 1          \n"  // 2
-      "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
-      "   brpl  14f                      \n"  // 1
-      "   in    r24, %[scratch]          \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   reti                           \n"  // 5
-      "14: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   jmp   __vector_x_boundary_late \n"  // 3
+      "   rjmp  11b                      \n"  // 2  the rest is as usual
       "16: pop   r25                     \n"  // 2
       "   rjmp  .+0                      \n"  // 2
       "   rjmp  .+0                      \n"  // 2
@@ -381,6 +561,20 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   jmp   __vector_x_boundary      \n"  // 3
+      "18: sbic  %[tifr], %[ocf]         \n"  // 1  a match meanwhile is that step
+      "   rjmp  12b                      \n"  // 2
+      "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
+      "   lds   r25, %[tcntHigh]         \n"  // 2
+      "   subi  r24, lo8(-32)            \n"  // 1
+      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   sts   %[ocrHigh], r25          \n"  // 2
+      "   sts   %[ocrLow], r24           \n"  // 2
+      "   lds   r24, %[missed]           \n"  // 2  and it is counted
+      "   lds   r25, %[missed] + 1       \n"  // 2
+      "   adiw  r24, 1                   \n"  // 2
+      "   sts   %[missed], r24           \n"  // 2
+      "   sts   %[missed] + 1, r25       \n"  // 2
+      "   rjmp  12b                      \n"  // 2
       :
       :
         [sreg] "I"(_SFR_IO_ADDR(SREG)),
@@ -390,6 +584,7 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
         [ocrHigh] "n"(_SFR_MEM_ADDR(OCR5AH)),
         [tcntLow] "n"(_SFR_MEM_ADDR(TCNT5L)),
         [tcntHigh] "n"(_SFR_MEM_ADDR(TCNT5H)),
+        [tifr] "I"(_SFR_IO_ADDR(TIFR5)),
         [due] "i"(&xMotion.due),
         [fraction] "i"(&xMotion.dueFraction),
         [interval] "i"(&xMotion.interval),
@@ -397,28 +592,10 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
         [levels] "i"(&xMotion.levels),
         [change] "i"(&xMotion.change),
         [length] "i"(&xMotion.length),
+        [missed] "i"(&xMotion.missed),
+        [ocf] "n"(OCF5A),
         [port0] "I"(_SFR_IO_ADDR(PORTF))
       : "memory");
-}
-
-// Brings the place on the ramp up to date with the levels that the interrupt has begun, and tells
-// whether it climbs.
-SHARED bool xSettle() {
-  auto &motion = near(xMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) return false;
-  const uint8_t begun = motion.planned - motion.levels;
-  const uint16_t steps = begun * motion.length;
-  motion.pace = motion.interval;
-  motion.mode = mode & ~(kClimb | kDescend);
-  if (mode & kClimb) {
-    motion.rung += begun;
-    motion.height += steps;
-    return true;
-  }
-  motion.rung -= begun;
-  motion.height -= steps;
-  return false;
 }
 
 // No step comes any more.
@@ -437,108 +614,16 @@ INLINE uint8_t xPlace(uint8_t behind) {
   return place < 8 ? place : place - 8;
 }
 
-// Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
-// It climbs while there is room to come down again, so it never has to know how a way goes on.
-SHARED void xDecide() {
-  auto &motion = near(xMotion);
-  if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
-    motion.rest += kFar;  // the end stays far away
-    motion.end += motion.mode & kReverse ? -kFar : kFar;
-  }
-  const uint16_t height = motion.height;
-  const uint16_t goal = motion.goal;
-  uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
-  if (slack > 256UL * kFlatSteps) slack = 256UL * kFlatSteps;
-  const uint16_t room = slack;
-  const bool descends = room == 0 || height > goal;
-  uint16_t way = 0;  // steps down or up
-  uint8_t rung = motion.rung;
-  if (descends) {
-    way = room ? height - goal : 0xFFFF;
-    if (rung == 0) --motion.row;
-  } else if (height < goal) {
-    way = goal - height;
-    if (room / 2 < way) way = room / 2;
-    if (rung == motion.rungs) {
-      ++motion.row;
-      rung = 0;
-    }
-  }
-  const Row row = readRow(xRamp + motion.row);
-  motion.rungs = row.levels;
-  way = levelsIn(way, row);
-  motion.interval = motion.pace;
-  motion.change = 0;
-  uint8_t length = row.steps;
-  uint8_t first = length;  // steps of the first level
-  uint8_t levels;  // and how many follow it
-  if (descends) {
-    if (rung == 0) rung = row.levels;
-    levels = --rung;
-    if (way <= levels) levels = way - 1;
-    motion.height = height - length;
-    motion.change = row.slope;
-    motion.interval += row.slope;
-    motion.mode |= kDescend;
-  } else if (way) {
-    levels = row.levels - rung - 1;
-    if (way <= levels) levels = way - 1;
-    motion.change = -row.slope;
-    motion.mode |= kClimb;
-  } else {
-    if (height == goal) motion.interval = motion.cruise;
-    const uint16_t others = room - 1;
-    length = kFlatSteps;
-    first = others % kFlatSteps + 1;
-    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
-  }
-  if (motion.interval >= kLappedInterval) {  // then each step is a boundary
-    levels = 0;
-    first = 1;
-  }
-  motion.rung = rung;
-  motion.length = length;
-  motion.levels = motion.planned = levels;
-  GPIOR1 = first;
-  motion.rest -= static_cast<uint16_t>(levels * length) + first;
-}
-
 // Begins a way from rest to the destination; tells whether there is one.
 SHARED bool xSetOut() {
   auto &motion = near(xMotion);
-  uint32_t way = motion.destination - motion.end;
-  if (way == 0) return false;
   const uint8_t before = motion.mode;
-  uint8_t mode = (before & kEndless) | kRunning;
-  if (way >> 31) {
-    mode |= kReverse;
-    way = -way;
-  }
-  motion.rest = way;
-  motion.end = motion.destination;
-  motion.mode = mode;
+  if (!setOut(motion, kXFirstInterval)) return false;
+  const uint8_t mode = motion.mode;
   if ((before ^ mode) & kReverse) {
     xPoint(mode);
   }
-  motion.row = 0;
-  motion.rung = 0;
-  motion.rungs = 1;
-  motion.height = 0;
-  motion.pace = kXFirstInterval;
-  xDecide();
   return true;
-}
-
-// Goes on to the destination from where a way has ended, or to the next one; tells whether there is
-// one.
-INLINE bool xGoOn() {
-  auto &motion = near(xMotion);
-  if (motion.destination == motion.end && xQueued) {
-    motion.destination = xQueue[xFirst];
-    xFirst = xPlace(1);
-    --xQueued;
-  }
-  return xSetOut();
 }
 
 // Where the step interrupt goes on in its rare ways: at the end of a row of levels, where a way
@@ -546,28 +631,28 @@ INLINE bool xGoOn() {
 extern "C" void __vector_x_boundary() __attribute__((signal, used, externally_visible));
 void __vector_x_boundary() {
   auto &motion = near(xMotion);
-  if (motion.lapsLeft) {  // no step is due
+  const bool lapped = motion.lapsLeft;
+  if (lapped) {  // no step is due
     GPIOR1 = 1;
     --motion.lapsLeft;
     motion.due += kLapTicks;
     OCR5A = motion.due;
-    xPassed();
-    return;
+  } else {
+    if (!endLevel(motion)) {  // the way has ended: on to the destination, or to the next one
+      if (motion.destination == motion.end && xQueued) {
+        motion.destination = xQueue[xFirst];
+        xFirst = xPlace(1);
+        --xQueued;
+      }
+      if (!xSetOut()) {
+        xRest();
+        return;
+      }
+    }
+    GPIOR1 = decide(motion, xRamp);
+    OCR5A = nextDue(motion);
   }
-  if (xSettle()) {  // the level is climbed
-    motion.interval += motion.change;
-    motion.pace = motion.interval;
-    motion.height += motion.length;
-    ++motion.rung;
-  }
-  if (motion.rest) {
-    xDecide();
-  } else if (!xGoOn()) {
-    xRest();
-    return;
-  }
-  xAdvance();
-  if (xPassed() && !motion.lapsLeft) ++motion.missed;
+  if (xPassed() && !lapped && !motion.lapsLeft) ++motion.missed;
 }
 
 void xInit() {
@@ -579,7 +664,6 @@ void xInit() {
   motion.levels = 0;
   motion.end = 0;
   motion.destination = 0;
-  motion.origin = 0;
   motion.goal = kXCruiseHeight;
   motion.cruise = kXCruiseInterval;
   xQueued = 0;
@@ -597,96 +681,49 @@ void xInit() {
   DDRF |= 0x03;  // STEP, DIR
 }
 
-// Lets a call in: no level follows the present one, which ends as it was; at constant speed, with
-// the next step. Tells whether the motor climbs. Only while interrupts are off, as what follows.
-SHARED bool xCut() {
-  auto &motion = near(xMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) GPIOR1 = 1;
-  const bool climbs = xSettle();
-  motion.mode |= mode & kDescend;
-  motion.levels = motion.planned = 0;
-  return climbs;
-}
-
-// Goes on from here for so many steps.
-SHARED void xLeave(uint32_t here, uint32_t steps) {
-  auto &motion = near(xMotion);
-  motion.end = motion.mode & kReverse ? here - steps : here + steps;
-  motion.rest = steps - GPIOR1;
-}
-
-// Has the motor move from here to a destination: from rest, or in mid-way.
-SHARED void xAim(uint32_t here, uint32_t destination, uint8_t endless) {
+// Has the motor move to a destination: from rest, or in mid-way. Only while interrupts are off.
+SHARED void xAim(uint32_t destination, uint8_t endless) {
   auto &motion = near(xMotion);
   xQueued = 0;
   if (motion.mode & kRunning) {
-    motion.destination = destination;
-    const bool climbs = xCut();
-    uint8_t mode = (motion.mode & ~(kEndless | kTurning)) | endless;
-    const int32_t ahead = mode & kReverse ? here - destination : destination - here;
-    uint32_t steps = motion.height + GPIOR1;  // it takes to come to rest
-    if (climbs) {
-      if (ahead >= static_cast<int32_t>(steps + motion.length)) {
-        mode |= kClimb;
-      } else {
-        GPIOR1 = 1;
-        steps = motion.height + 1UL;
-      }
-    }
-    if (ahead >= static_cast<int32_t>(steps)) {
-      steps = ahead;
-    } else {
-      mode |= kTurning;
-    }
-    motion.mode = mode;
-    xLeave(here, steps);
-  } else if (destination != here) {
+    GPIOR1 = redirect(motion, GPIOR1, destination, endless);
+  } else if (destination != motion.end) {
     xStopTimer();
     xEnergise();
     motion.destination = destination;
-    motion.end = here;
     motion.mode = (motion.mode & kReverse) | endless;
     xSetOut();
+    GPIOR1 = decide(motion, xRamp);
     xRunTimer();
   }
 }
 
 int8_t xMoveTo(int32_t target) {
   const Masked masked;
-  xAim(xPosition(), xMotion.origin + target, 0);
+  xAim(target, 0);
   return 0;
 }
 
 int8_t xMove(int32_t steps) {
   const Masked masked;
-  const uint32_t here = xPosition();
-  xAim(here, here + steps, 0);
+  xAim(xPosition() + steps, 0);
   return 0;
 }
 
 void xRunForward() {
   const Masked masked;
-  const uint32_t here = xPosition();
-  xAim(here, here + kFar, kEndless);
+  xAim(xPosition() + kFar, kEndless);
 }
 
 void xRunBackward() {
   const Masked masked;
-  const uint32_t here = xPosition();
-  xAim(here, here - kFar, kEndless);
+  xAim(xPosition() - kFar, kEndless);
 }
 
 void xStop() {
   const Masked masked;
   xQueued = 0;
-  auto &motion = near(xMotion);
-  if (!(motion.mode & kRunning)) return;
-  const uint32_t here = xPosition();
-  if (xCut()) GPIOR1 = 1;
-  motion.mode &= ~(kEndless | kTurning);
-  xLeave(here, static_cast<uint32_t>(motion.height) + GPIOR1);
-  motion.destination = motion.end;
+  GPIOR1 = comeToRest(xMotion, GPIOR1);
 }
 
 void xHalt() {
@@ -697,45 +734,11 @@ void xHalt() {
   xRest();
 }
 
-// How high the motor may climb for a speed: to the last level that is not faster.
-static uint16_t xHeightFor(uint32_t interval) {
-  uint16_t height = 0;
-  uint32_t pace = kXFirstInterval;
-  for (const PackedRow *packed = xRamp; packed < xRamp + 58; ++packed) {
-    const Row row = readRow(packed);
-    const uint32_t top = pace - row.slope * row.levels;
-    if (top < interval) {  // in this row: bit by bit, how many of its levels
-      uint8_t levels = 0;
-      for (uint8_t more = 128; more; more >>= 1) {
-        const uint8_t tried = levels + more;
-        if (tried < row.levels && pace - row.slope * tried >= interval) levels = tried;
-      }
-      return height + levels * row.steps;
-    }
-    height += row.levels * row.steps;
-    pace = top;
-  }
-  return height;
-}
-
 int8_t xSetSpeed(uint32_t interval) {
   if (interval < kXCruiseInterval) return MOTOR_ERROR_TOO_FAST;
-  const uint16_t goal = xHeightFor(interval);
+  const uint16_t goal = heightFor(xRamp, 58, kXFirstInterval, interval);
   const Masked masked;
-  auto &motion = near(xMotion);
-  motion.goal = goal;
-  motion.cruise = interval;
-  if (motion.mode & kRunning) {
-    const uint32_t left = xLeft();
-    if (xCut()) {
-      if (goal >= motion.height + motion.length) {
-        motion.mode |= kClimb;
-      } else {
-        GPIOR1 = 1;
-      }
-    }
-    motion.rest = left - GPIOR1;
-  }
+  GPIOR1 = cruiseAt(xMotion, GPIOR1, interval, goal);
   return 0;
 }
 
@@ -750,9 +753,9 @@ INLINE uint32_t xTarget() {
 int8_t xQueueMoveTo(int32_t target) {
   const Masked masked;
   auto &motion = near(xMotion);
-  const uint32_t destination = motion.origin + target;
+  const uint32_t destination = target;
   if (!(motion.mode & kRunning)) {
-    xAim(xPosition(), destination, 0);
+    xAim(destination, 0);
     return 0;
   }
   if (motion.mode & kEndless) return MOTOR_ERROR_RUNNING;
@@ -765,12 +768,12 @@ int8_t xQueueMoveTo(int32_t target) {
 
 int32_t xCurrentPosition() {
   const Masked masked;
-  return xPosition() - xMotion.origin;
+  return xPosition();
 }
 
 int32_t xTargetPosition() {
   const Masked masked;
-  return xTarget() - xMotion.origin;
+  return xTarget();
 }
 
 int32_t xDistanceToGo() {
@@ -787,7 +790,7 @@ int8_t xSetCurrentPosition(int32_t position) {
   const Masked masked;
   auto &motion = near(xMotion);
   if (motion.mode & kRunning) return MOTOR_ERROR_RUNNING;
-  motion.origin = xPosition() - position;
+  motion.end = motion.destination = position;
   return 0;
 }
 
@@ -822,71 +825,10 @@ uint16_t xReadMissed() {
 static AxisMotion yMotion;
 static uint8_t yCount;  // step interrupts until the next boundary
 
-// From 500 to 16000 steps/s at 40000 steps/s^2: 3181 steps. Row by row from the lowest speed on:
-// the levels, the steps of each and how much shorter the interval is from one to the next.
+// From 500 to 16000 steps/s at 40000 steps/s^2: 3181 steps, as x's.
 constexpr uint32_t kYFirstInterval = 7624322UL;
 constexpr uint32_t kYCruiseInterval = 256000UL;
 constexpr uint16_t kYCruiseHeight = 3181;  // in steps
-static const PackedRow yRamp[] PROGMEM = {
-    {1, 0x10, 3440},  // 1 x 1, 3440 clocks
-    {1, 0x10, 2467},  // 1 x 1, 2467 clocks
-    {1, 0x10, 1882},  // 1 x 1, 1882 clocks
-    {1, 0x10, 1497},  // 1 x 1, 1497 clocks
-    {1, 0x10, 1227},  // 1 x 1, 1227 clocks
-    {1, 0x10, 1030},  // 1 x 1, 1030 clocks
-    {1, 0x10, 880},  // 1 x 1, 880 clocks
-    {1, 0x10, 764},  // 1 x 1, 764 clocks
-    {1, 0x10, 672},  // 1 x 1, 672 clocks
-    {1, 0x10, 596},  // 1 x 1, 596 clocks
-    {1, 0x10, 533},  // 1 x 1, 533 clocks
-    {1, 0x10, 482},  // 1 x 1, 482 clocks
-    {2, 0x10, 425},  // 2 x 1, 425 clocks
-    {2, 0x10, 351},  // 2 x 1, 351 clocks
-    {2, 0x10, 301},  // 2 x 1, 301 clocks
-    {3, 0x10, 257},  // 3 x 1, 257 clocks
-    {3, 0x00, 53979},  // 3 x 1, 210.855 clocks
-    {3, 0x00, 45983},  // 3 x 1, 179.621 clocks
-    {4, 0x00, 39148},  // 4 x 1, 152.922 clocks
-    {4, 0x00, 32583},  // 4 x 1, 127.277 clocks
-    {5, 0x00, 27569},  // 5 x 1, 107.691 clocks
-    {5, 0x00, 23057},  // 5 x 1, 90.0664 clocks
-    {6, 0x00, 19594},  // 6 x 1, 76.5391 clocks
-    {7, 0x00, 16377},  // 7 x 1, 63.9727 clocks
-    {8, 0x00, 13648},  // 8 x 1, 53.3125 clocks
-    {9, 0x00, 11359},  // 9 x 1, 44.3711 clocks
-    {10, 0x00, 9477},  // 10 x 1, 37.0195 clocks
-    {11, 0x00, 7933},  // 11 x 1, 30.9883 clocks
-    {13, 0x00, 6642},  // 13 x 1, 25.9453 clocks
-    {14, 0x00, 5533},  // 14 x 1, 21.6133 clocks
-    {16, 0x00, 4644},  // 16 x 1, 18.1406 clocks
-    {18, 0x00, 3883},  // 18 x 1, 15.168 clocks
-    {21, 0x00, 3243},  // 21 x 1, 12.668 clocks
-    {24, 0x00, 2692},  // 24 x 1, 10.5156 clocks
-    {27, 0x00, 2235},  // 27 x 1, 8.73047 clocks
-    {24, 0x00, 1916},  // 24 x 1, 7.48438 clocks
-    {17, 0x01, 3216},  // 17 x 2, 12.5625 clocks
-    {19, 0x01, 2654},  // 19 x 2, 10.3672 clocks
-    {21, 0x01, 2212},  // 21 x 2, 8.64062 clocks
-    {24, 0x01, 1847},  // 24 x 2, 7.21484 clocks
-    {27, 0x01, 1539},  // 27 x 2, 6.01172 clocks
-    {20, 0x01, 1336},  // 20 x 2, 5.21875 clocks
-    {17, 0x02, 2282},  // 17 x 4, 8.91406 clocks
-    {19, 0x02, 1877},  // 19 x 4, 7.33203 clocks
-    {21, 0x02, 1565},  // 21 x 4, 6.11328 clocks
-    {24, 0x02, 1306},  // 24 x 4, 5.10156 clocks
-    {27, 0x02, 1088},  // 27 x 4, 4.25 clocks
-    {20, 0x02, 946},  // 20 x 4, 3.69531 clocks
-    {17, 0x03, 1614},  // 17 x 8, 6.30469 clocks
-    {19, 0x03, 1327},  // 19 x 8, 5.18359 clocks
-    {21, 0x03, 1107},  // 21 x 8, 4.32422 clocks
-    {24, 0x03, 924},  // 24 x 8, 3.60938 clocks
-    {27, 0x03, 769},  // 27 x 8, 3.00391 clocks
-    {20, 0x03, 669},  // 20 x 8, 2.61328 clocks
-    {17, 0x04, 1141},  // 17 x 16, 4.45703 clocks
-    {19, 0x04, 939},  // 19 x 16, 3.66797 clocks
-    {21, 0x04, 782},  // 21 x 16, 3.05469 clocks
-    {24, 0x04, 654},  // 24 x 16, 2.55469 clocks
-};
 
 // Writes DIR for a mode. Only while interrupts are off.
 INLINE void yPoint(uint8_t mode) {
@@ -902,18 +844,8 @@ INLINE void yCoilsOff() {
   PORTF |= 0x04;  // ENABLE
 }
 
-// Steps that are left of this way. Only while interrupts are off.
-INLINE uint32_t yLeft() {
-  auto &motion = near(yMotion);
-  return motion.rest + static_cast<uint16_t>(motion.levels * motion.length) + yCount;
-}
-
-// Where the motor is: the end of its way less what is left. Only while interrupts are off.
-SHARED uint32_t yPosition() {
-  auto &motion = near(yMotion);
-  const uint32_t left = yLeft();
-  return motion.end + (motion.mode & kReverse ? left : -left);
-}
+// Where the motor is. Only while interrupts are off.
+INLINE uint32_t yPosition() { return positionOf(yMotion, yCount); }
 
 // Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void yEnergise() {
@@ -934,43 +866,17 @@ INLINE bool yPassed() {
   return true;
 }
 
-// Has the channel match one interval after it was last due; a long one begins with 16384 to 32767
-// clocks, and laps follow.
-SHARED void yAdvance() {
-  auto &motion = near(yMotion);
-  const uint32_t interval = motion.interval;
-  uint16_t ticks = interval >> 8;
-  uint16_t laps = 0;
-  if (interval >= kLappedInterval) {
-    const uint16_t high = interval >> 16;
-    laps = (high >> 6) - 1;
-    ticks = (ticks & (kLapTicks - 1)) | kLapTicks;
-  }
-  motion.lapsLeft = laps;
-  const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);
-  motion.dueFraction = fraction;
-  const uint16_t due = motion.due + ticks + (fraction >> 8);
-  motion.due = due;
-  OCR5B = due;
-}
-
 // Starts the first interval from rest, which begins now.
 INLINE void yRunTimer() {
   auto &motion = near(yMotion);
   motion.dueFraction = 0;
   motion.due = TCNT5;
-  yAdvance();
+  OCR5B = nextDue(motion);
   TIFR5 = _BV(OCF5B);  // a match of before makes no step
   TIMSK5 |= _BV(OCIE5B);
 }
 
-// Where the step interrupt goes on when the next step is due already.
-extern "C" void __vector_y_boundary_late() __attribute__((signal, used, externally_visible));
-void __vector_y_boundary_late() {
-  if (yPassed()) ++yMotion.missed;
-}
-
-// Timer 5 compare match B: one step, 71 cycles from the interrupt's response to RETI; at most 1070
+// Timer 5 compare match B: one step, 71 cycles from the interrupt's response to RETI; at most 940
 // when it goes on in __vector_y_boundary. STEP rises 20 cycles after the match (30 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port F and nothing else that the sketch can see. Behind each instruction stand its cycles.
@@ -985,7 +891,7 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
       "   breq  1f                       \n"  // 1  at the end of a level
       "   sbi   %[port0], 6              \n"  // 2  STEP rises: one step
       "   push  r25                      \n"  // 2
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
+      "11: lds   r24, %[fraction]        \n"  // 2  when this step was due, and the interval
       "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
       "   add   r24, r25                 \n"  // 1
       "   sts   %[fraction], r24         \n"  // 2
@@ -1005,19 +911,15 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
       "   lds   r24, %[tcntHigh]         \n"  // 2
       "   lds   r25, %[due] + 1          \n"  // 2
       "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
       "   brpl  13f                      \n"  // 1
+      "12: pop   r25                     \n"  // 2
       "   in    r24, %[scratch]          \n"  // 1
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   cbi   %[port0], 6              \n"  // 2  STEP falls
       "   reti                           \n"  // 5
 
-      "13: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   cbi   %[port0], 6              \n"  // 2  STEP falls
-      "   jmp   __vector_y_boundary_late \n"  // 3
+      "13: rjmp  18f                     \n"  // 2
 
       "1: lds   r24, %[laps]             \n"  // 2  laps of a long interval that are left?
       "   tst   r24                      \n"  // 1
@@ -1047,37 +949,7 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
       "   sts   %[interval] + 2, r24     \n"  // 2
       "   lds   r24, %[length]           \n"  // 2  and lasts for so many steps
       "   sts   %[count], r24            \n"  // 2
-      "   cbi   %[port0], 6              \n"  // 2  STEP falls
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
-      "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
-      "   add   r24, r25                 \n"  // 1
-      "   sts   %[fraction], r24         \n"  // 2
-      "   lds   r24, %[due]              \n"  // 2  then clocks
-      "   lds   r25, %[interval] + 1     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due], r24              \n"  // 2
-      "   lds   r24, %[due] + 1          \n"  // 2
-      "   lds   r25, %[interval] + 2     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due] + 1, r24          \n"  // 2
-      "   sts   %[ocrHigh], r24          \n"  // 2  waits in TEMP
-      "   lds   r25, %[due]              \n"  // 2
-      "   sts   %[ocrLow], r25           \n"  // 2  the next match is the next step
-      "   lds   r24, %[tcntLow]          \n"  // 2
-      "   sub   r24, r25                 \n"  // 1
-      "   lds   r24, %[tcntHigh]         \n"  // 2
-      "   lds   r25, %[due] + 1          \n"  // 2
-      "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
-      "   brpl  14f                      \n"  // 1
-      "   in    r24, %[scratch]          \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   reti                           \n"  // 5
-      "14: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   jmp   __vector_y_boundary_late \n"  // 3
+      "   rjmp  11b                      \n"  // 2  the rest is as usual
       "16: pop   r25                     \n"  // 2
       "   rjmp  .+0                      \n"  // 2
       "   rjmp  .+0                      \n"  // 2
@@ -1086,6 +958,20 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   jmp   __vector_y_boundary      \n"  // 3
+      "18: sbic  %[tifr], %[ocf]         \n"  // 1  a match meanwhile is that step
+      "   rjmp  12b                      \n"  // 2
+      "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
+      "   lds   r25, %[tcntHigh]         \n"  // 2
+      "   subi  r24, lo8(-32)            \n"  // 1
+      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   sts   %[ocrHigh], r25          \n"  // 2
+      "   sts   %[ocrLow], r24           \n"  // 2
+      "   lds   r24, %[missed]           \n"  // 2  and it is counted
+      "   lds   r25, %[missed] + 1       \n"  // 2
+      "   adiw  r24, 1                   \n"  // 2
+      "   sts   %[missed], r24           \n"  // 2
+      "   sts   %[missed] + 1, r25       \n"  // 2
+      "   rjmp  12b                      \n"  // 2
       :
       :
         [sreg] "I"(_SFR_IO_ADDR(SREG)),
@@ -1095,6 +981,7 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
         [ocrHigh] "n"(_SFR_MEM_ADDR(OCR5BH)),
         [tcntLow] "n"(_SFR_MEM_ADDR(TCNT5L)),
         [tcntHigh] "n"(_SFR_MEM_ADDR(TCNT5H)),
+        [tifr] "I"(_SFR_IO_ADDR(TIFR5)),
         [due] "i"(&yMotion.due),
         [fraction] "i"(&yMotion.dueFraction),
         [interval] "i"(&yMotion.interval),
@@ -1102,28 +989,10 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
         [levels] "i"(&yMotion.levels),
         [change] "i"(&yMotion.change),
         [length] "i"(&yMotion.length),
+        [missed] "i"(&yMotion.missed),
+        [ocf] "n"(OCF5B),
         [port0] "I"(_SFR_IO_ADDR(PORTF))
       : "memory");
-}
-
-// Brings the place on the ramp up to date with the levels that the interrupt has begun, and tells
-// whether it climbs.
-SHARED bool ySettle() {
-  auto &motion = near(yMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) return false;
-  const uint8_t begun = motion.planned - motion.levels;
-  const uint16_t steps = begun * motion.length;
-  motion.pace = motion.interval;
-  motion.mode = mode & ~(kClimb | kDescend);
-  if (mode & kClimb) {
-    motion.rung += begun;
-    motion.height += steps;
-    return true;
-  }
-  motion.rung -= begun;
-  motion.height -= steps;
-  return false;
 }
 
 // No step comes any more.
@@ -1136,102 +1005,16 @@ INLINE void yRest() {
   yCount = 0;
 }
 
-// Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
-// It climbs while there is room to come down again, so it never has to know how a way goes on.
-SHARED void yDecide() {
-  auto &motion = near(yMotion);
-  if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
-    motion.rest += kFar;  // the end stays far away
-    motion.end += motion.mode & kReverse ? -kFar : kFar;
-  }
-  const uint16_t height = motion.height;
-  const uint16_t goal = motion.goal;
-  uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
-  if (slack > 256UL * kFlatSteps) slack = 256UL * kFlatSteps;
-  const uint16_t room = slack;
-  const bool descends = room == 0 || height > goal;
-  uint16_t way = 0;  // steps down or up
-  uint8_t rung = motion.rung;
-  if (descends) {
-    way = room ? height - goal : 0xFFFF;
-    if (rung == 0) --motion.row;
-  } else if (height < goal) {
-    way = goal - height;
-    if (room / 2 < way) way = room / 2;
-    if (rung == motion.rungs) {
-      ++motion.row;
-      rung = 0;
-    }
-  }
-  const Row row = readRow(yRamp + motion.row);
-  motion.rungs = row.levels;
-  way = levelsIn(way, row);
-  motion.interval = motion.pace;
-  motion.change = 0;
-  uint8_t length = row.steps;
-  uint8_t first = length;  // steps of the first level
-  uint8_t levels;  // and how many follow it
-  if (descends) {
-    if (rung == 0) rung = row.levels;
-    levels = --rung;
-    if (way <= levels) levels = way - 1;
-    motion.height = height - length;
-    motion.change = row.slope;
-    motion.interval += row.slope;
-    motion.mode |= kDescend;
-  } else if (way) {
-    levels = row.levels - rung - 1;
-    if (way <= levels) levels = way - 1;
-    motion.change = -row.slope;
-    motion.mode |= kClimb;
-  } else {
-    if (height == goal) motion.interval = motion.cruise;
-    const uint16_t others = room - 1;
-    length = kFlatSteps;
-    first = others % kFlatSteps + 1;
-    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
-  }
-  if (motion.interval >= kLappedInterval) {  // then each step is a boundary
-    levels = 0;
-    first = 1;
-  }
-  motion.rung = rung;
-  motion.length = length;
-  motion.levels = motion.planned = levels;
-  yCount = first;
-  motion.rest -= static_cast<uint16_t>(levels * length) + first;
-}
-
 // Begins a way from rest to the destination; tells whether there is one.
 SHARED bool ySetOut() {
   auto &motion = near(yMotion);
-  uint32_t way = motion.destination - motion.end;
-  if (way == 0) return false;
   const uint8_t before = motion.mode;
-  uint8_t mode = (before & kEndless) | kRunning;
-  if (way >> 31) {
-    mode |= kReverse;
-    way = -way;
-  }
-  motion.rest = way;
-  motion.end = motion.destination;
-  motion.mode = mode;
+  if (!setOut(motion, kYFirstInterval)) return false;
+  const uint8_t mode = motion.mode;
   if ((before ^ mode) & kReverse) {
     yPoint(mode);
   }
-  motion.row = 0;
-  motion.rung = 0;
-  motion.rungs = 1;
-  motion.height = 0;
-  motion.pace = kYFirstInterval;
-  yDecide();
   return true;
-}
-
-// Goes on to the destination from where a way has ended, or to the next one; tells whether there is
-// one.
-INLINE bool yGoOn() {
-  return ySetOut();
 }
 
 // Where the step interrupt goes on in its rare ways: at the end of a row of levels, where a way
@@ -1239,28 +1022,23 @@ INLINE bool yGoOn() {
 extern "C" void __vector_y_boundary() __attribute__((signal, used, externally_visible));
 void __vector_y_boundary() {
   auto &motion = near(yMotion);
-  if (motion.lapsLeft) {  // no step is due
+  const bool lapped = motion.lapsLeft;
+  if (lapped) {  // no step is due
     yCount = 1;
     --motion.lapsLeft;
     motion.due += kLapTicks;
     OCR5B = motion.due;
-    yPassed();
-    return;
+  } else {
+    if (!endLevel(motion)) {  // the way has ended: on to the destination, or to the next one
+      if (!ySetOut()) {
+        yRest();
+        return;
+      }
+    }
+    yCount = decide(motion, xRamp);
+    OCR5B = nextDue(motion);
   }
-  if (ySettle()) {  // the level is climbed
-    motion.interval += motion.change;
-    motion.pace = motion.interval;
-    motion.height += motion.length;
-    ++motion.rung;
-  }
-  if (motion.rest) {
-    yDecide();
-  } else if (!yGoOn()) {
-    yRest();
-    return;
-  }
-  yAdvance();
-  if (yPassed() && !motion.lapsLeft) ++motion.missed;
+  if (yPassed() && !lapped && !motion.lapsLeft) ++motion.missed;
 }
 
 void yInit() {
@@ -1272,7 +1050,6 @@ void yInit() {
   motion.levels = 0;
   motion.end = 0;
   motion.destination = 0;
-  motion.origin = 0;
   motion.goal = kYCruiseHeight;
   motion.cruise = kYCruiseInterval;
   motion.missed = 0;
@@ -1288,94 +1065,47 @@ void yInit() {
   DDRF |= 0xC4;  // STEP, DIR, ENABLE
 }
 
-// Lets a call in: no level follows the present one, which ends as it was; at constant speed, with
-// the next step. Tells whether the motor climbs. Only while interrupts are off, as what follows.
-SHARED bool yCut() {
-  auto &motion = near(yMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) yCount = 1;
-  const bool climbs = ySettle();
-  motion.mode |= mode & kDescend;
-  motion.levels = motion.planned = 0;
-  return climbs;
-}
-
-// Goes on from here for so many steps.
-SHARED void yLeave(uint32_t here, uint32_t steps) {
-  auto &motion = near(yMotion);
-  motion.end = motion.mode & kReverse ? here - steps : here + steps;
-  motion.rest = steps - yCount;
-}
-
-// Has the motor move from here to a destination: from rest, or in mid-way.
-SHARED void yAim(uint32_t here, uint32_t destination, uint8_t endless) {
+// Has the motor move to a destination: from rest, or in mid-way. Only while interrupts are off.
+SHARED void yAim(uint32_t destination, uint8_t endless) {
   auto &motion = near(yMotion);
   if (motion.mode & kRunning) {
-    motion.destination = destination;
-    const bool climbs = yCut();
-    uint8_t mode = (motion.mode & ~(kEndless | kTurning)) | endless;
-    const int32_t ahead = mode & kReverse ? here - destination : destination - here;
-    uint32_t steps = motion.height + yCount;  // it takes to come to rest
-    if (climbs) {
-      if (ahead >= static_cast<int32_t>(steps + motion.length)) {
-        mode |= kClimb;
-      } else {
-        yCount = 1;
-        steps = motion.height + 1UL;
-      }
-    }
-    if (ahead >= static_cast<int32_t>(steps)) {
-      steps = ahead;
-    } else {
-      mode |= kTurning;
-    }
-    motion.mode = mode;
-    yLeave(here, steps);
-  } else if (destination != here) {
+    yCount = redirect(motion, yCount, destination, endless);
+  } else if (destination != motion.end) {
     yStopTimer();
     yEnergise();
     motion.destination = destination;
-    motion.end = here;
     motion.mode = (motion.mode & kReverse) | endless;
     ySetOut();
+    yCount = decide(motion, xRamp);
     yRunTimer();
   }
 }
 
 int8_t yMoveTo(int32_t target) {
   const Masked masked;
-  yAim(yPosition(), yMotion.origin + target, 0);
+  yAim(target, 0);
   return 0;
 }
 
 int8_t yMove(int32_t steps) {
   const Masked masked;
-  const uint32_t here = yPosition();
-  yAim(here, here + steps, 0);
+  yAim(yPosition() + steps, 0);
   return 0;
 }
 
 void yRunForward() {
   const Masked masked;
-  const uint32_t here = yPosition();
-  yAim(here, here + kFar, kEndless);
+  yAim(yPosition() + kFar, kEndless);
 }
 
 void yRunBackward() {
   const Masked masked;
-  const uint32_t here = yPosition();
-  yAim(here, here - kFar, kEndless);
+  yAim(yPosition() - kFar, kEndless);
 }
 
 void yStop() {
   const Masked masked;
-  auto &motion = near(yMotion);
-  if (!(motion.mode & kRunning)) return;
-  const uint32_t here = yPosition();
-  if (yCut()) yCount = 1;
-  motion.mode &= ~(kEndless | kTurning);
-  yLeave(here, static_cast<uint32_t>(motion.height) + yCount);
-  motion.destination = motion.end;
+  yCount = comeToRest(yMotion, yCount);
 }
 
 void yHalt() {
@@ -1385,45 +1115,11 @@ void yHalt() {
   yRest();
 }
 
-// How high the motor may climb for a speed: to the last level that is not faster.
-static uint16_t yHeightFor(uint32_t interval) {
-  uint16_t height = 0;
-  uint32_t pace = kYFirstInterval;
-  for (const PackedRow *packed = yRamp; packed < yRamp + 58; ++packed) {
-    const Row row = readRow(packed);
-    const uint32_t top = pace - row.slope * row.levels;
-    if (top < interval) {  // in this row: bit by bit, how many of its levels
-      uint8_t levels = 0;
-      for (uint8_t more = 128; more; more >>= 1) {
-        const uint8_t tried = levels + more;
-        if (tried < row.levels && pace - row.slope * tried >= interval) levels = tried;
-      }
-      return height + levels * row.steps;
-    }
-    height += row.levels * row.steps;
-    pace = top;
-  }
-  return height;
-}
-
 int8_t ySetSpeed(uint32_t interval) {
   if (interval < kYCruiseInterval) return MOTOR_ERROR_TOO_FAST;
-  const uint16_t goal = yHeightFor(interval);
+  const uint16_t goal = heightFor(xRamp, 58, kYFirstInterval, interval);
   const Masked masked;
-  auto &motion = near(yMotion);
-  motion.goal = goal;
-  motion.cruise = interval;
-  if (motion.mode & kRunning) {
-    const uint32_t left = yLeft();
-    if (yCut()) {
-      if (goal >= motion.height + motion.length) {
-        motion.mode |= kClimb;
-      } else {
-        yCount = 1;
-      }
-    }
-    motion.rest = left - yCount;
-  }
+  yCount = cruiseAt(yMotion, yCount, interval, goal);
   return 0;
 }
 
@@ -1436,12 +1132,12 @@ INLINE uint32_t yTarget() {
 
 int32_t yCurrentPosition() {
   const Masked masked;
-  return yPosition() - yMotion.origin;
+  return yPosition();
 }
 
 int32_t yTargetPosition() {
   const Masked masked;
-  return yTarget() - yMotion.origin;
+  return yTarget();
 }
 
 int32_t yDistanceToGo() {
@@ -1458,7 +1154,7 @@ int8_t ySetCurrentPosition(int32_t position) {
   const Masked masked;
   auto &motion = near(yMotion);
   if (motion.mode & kRunning) return MOTOR_ERROR_RUNNING;
-  motion.origin = yPosition() - position;
+  motion.end = motion.destination = position;
   return 0;
 }
 
@@ -1498,7 +1194,7 @@ static uint8_t zCount;  // step interrupts until the next boundary
 constexpr uint32_t kZFirstInterval = 91589344UL;
 constexpr uint32_t kZCruiseInterval = 1024000UL;
 constexpr uint16_t kZCruiseHeight = 1992;  // in steps
-static const PackedRow zRamp[] PROGMEM = {
+static const Row zRamp[] PROGMEM = {
     {1, 0x20, 819},  // 1 x 1, 209664 clocks
     {1, 0x10, 34394},  // 1 x 1, 34394 clocks
     {1, 0x10, 17848},  // 1 x 1, 17848 clocks
@@ -1572,18 +1268,8 @@ INLINE void zCoilsOff() {
   PORTK |= 0x01;  // ENABLE
 }
 
-// Steps that are left of this way. Only while interrupts are off.
-INLINE uint32_t zLeft() {
-  auto &motion = near(zMotion);
-  return motion.rest + static_cast<uint16_t>(motion.levels * motion.length) + zCount;
-}
-
-// Where the motor is: the end of its way less what is left. Only while interrupts are off.
-SHARED uint32_t zPosition() {
-  auto &motion = near(zMotion);
-  const uint32_t left = zLeft();
-  return motion.end + (motion.mode & kReverse ? left : -left);
-}
+// Where the motor is. Only while interrupts are off.
+INLINE uint32_t zPosition() { return positionOf(zMotion, zCount); }
 
 // Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void zEnergise() {
@@ -1604,44 +1290,18 @@ INLINE bool zPassed() {
   return true;
 }
 
-// Has the channel match one interval after it was last due; a long one begins with 16384 to 32767
-// clocks, and laps follow.
-SHARED void zAdvance() {
-  auto &motion = near(zMotion);
-  const uint32_t interval = motion.interval;
-  uint16_t ticks = interval >> 8;
-  uint16_t laps = 0;
-  if (interval >= kLappedInterval) {
-    const uint16_t high = interval >> 16;
-    laps = (high >> 6) - 1;
-    ticks = (ticks & (kLapTicks - 1)) | kLapTicks;
-  }
-  motion.lapsLeft = laps;
-  const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);
-  motion.dueFraction = fraction;
-  const uint16_t due = motion.due + ticks + (fraction >> 8);
-  motion.due = due;
-  OCR5C = due;
-}
-
 // Starts the first interval from rest, which begins now.
 INLINE void zRunTimer() {
   auto &motion = near(zMotion);
   motion.dueFraction = 0;
   motion.due = TCNT5;
-  zAdvance();
+  OCR5C = nextDue(motion);
   TIFR5 = _BV(OCF5C);  // a match of before makes no step
   TIMSK5 |= _BV(OCIE5C);
 }
 
-// Where the step interrupt goes on when the next step is due already.
-extern "C" void __vector_z_boundary_late() __attribute__((signal, used, externally_visible));
-void __vector_z_boundary_late() {
-  if (zPassed()) ++zMotion.missed;
-}
-
-// Timer 5 compare match C: one step, 81 cycles from the interrupt's response to RETI; at most 1124
-// when it goes on in __vector_z_boundary. STEP rises 24 cycles after the match (34 before a
+// Timer 5 compare match C: one step, 78 cycles from the interrupt's response to RETI; at most 993
+// when it goes on in __vector_z_boundary. STEP rises 23 cycles after the match (33 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port K and L and nothing else that the sketch can see. Behind each instruction stand its
 // cycles.
@@ -1653,13 +1313,12 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
       "   lds   r24, %[count]            \n"  // 2
       "   dec   r24                      \n"  // 1  one step less of this level
       "   sts   %[count], r24            \n"  // 2
-      "   brne  .+2                      \n"  // 2
-      "   rjmp  1f                       \n"  //    at the end of a level
+      "   breq  1f                       \n"  // 1  at the end of a level
       "   lds   r24, %[port0]            \n"  // 2
       "   ori   r24, 0x08                \n"  // 1  the port's other bits stay
       "   sts   %[port0], r24            \n"  // 2  STEP rises: one step
       "   push  r25                      \n"  // 2
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
+      "11: lds   r24, %[fraction]        \n"  // 2  when this step was due, and the interval
       "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
       "   add   r24, r25                 \n"  // 1
       "   sts   %[fraction], r24         \n"  // 2
@@ -1679,27 +1338,18 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
       "   lds   r24, %[tcntHigh]         \n"  // 2
       "   lds   r25, %[due] + 1          \n"  // 2
       "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
       "   brpl  13f                      \n"  // 1
-      "   lds   r24, %[port0]            \n"  // 2
+      "12: lds   r24, %[port0]           \n"  // 2
       "   andi  r24, 0xf7                \n"  // 1  the port's other bits stay
       "   sts   %[port0], r24            \n"  // 2  STEP falls
-      "   rjmp  .+0                      \n"  // 2
       "   nop                            \n"  // 1
+      "   pop   r25                      \n"  // 2
       "   in    r24, %[scratch]          \n"  // 1
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   reti                           \n"  // 5
 
-      "13: lds   r24, %[port0]           \n"  // 2
-      "   andi  r24, 0xf7                \n"  // 1  the port's other bits stay
-      "   sts   %[port0], r24            \n"  // 2  STEP falls
-      "   rjmp  .+0                      \n"  // 2
-      "   nop                            \n"  // 1
-      "   in    r24, %[scratch]          \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   jmp   __vector_z_boundary_late \n"  // 3
+      "13: rjmp  18f                     \n"  // 2
 
       "1: lds   r24, %[laps]             \n"  // 2  laps of a long interval that are left?
       "   tst   r24                      \n"  // 1
@@ -1731,43 +1381,7 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
       "   sts   %[interval] + 2, r24     \n"  // 2
       "   lds   r24, %[length]           \n"  // 2  and lasts for so many steps
       "   sts   %[count], r24            \n"  // 2
-      "   lds   r24, %[port0]            \n"  // 2
-      "   andi  r24, 0xf7                \n"  // 1  the port's other bits stay
-      "   sts   %[port0], r24            \n"  // 2  STEP falls
-      "   ldi   r24, 2                   \n"  // 1  STEP stays LOW
-      "8: dec   r24                      \n"  // 2  2 times
-      "   brne  8b                       \n"  // 3
-      "   nop                            \n"  // 1
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
-      "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
-      "   add   r24, r25                 \n"  // 1
-      "   sts   %[fraction], r24         \n"  // 2
-      "   lds   r24, %[due]              \n"  // 2  then clocks
-      "   lds   r25, %[interval] + 1     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due], r24              \n"  // 2
-      "   lds   r24, %[due] + 1          \n"  // 2
-      "   lds   r25, %[interval] + 2     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due] + 1, r24          \n"  // 2
-      "   sts   %[ocrHigh], r24          \n"  // 2  waits in TEMP
-      "   lds   r25, %[due]              \n"  // 2
-      "   sts   %[ocrLow], r25           \n"  // 2  the next match is the next step
-      "   lds   r24, %[tcntLow]          \n"  // 2
-      "   sub   r24, r25                 \n"  // 1
-      "   lds   r24, %[tcntHigh]         \n"  // 2
-      "   lds   r25, %[due] + 1          \n"  // 2
-      "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
-      "   brpl  14f                      \n"  // 1
-      "   in    r24, %[scratch]          \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   reti                           \n"  // 5
-      "14: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   jmp   __vector_z_boundary_late \n"  // 3
+      "   rjmp  11b                      \n"  // 2  the rest is as usual
       "16: pop   r25                     \n"  // 2
       "   ldi   r24, 5                   \n"  // 1  STEP stays HIGH
       "8: dec   r24                      \n"  // 5  5 times
@@ -1784,6 +1398,20 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   jmp   __vector_z_boundary      \n"  // 3
+      "18: sbic  %[tifr], %[ocf]         \n"  // 1  a match meanwhile is that step
+      "   rjmp  12b                      \n"  // 2
+      "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
+      "   lds   r25, %[tcntHigh]         \n"  // 2
+      "   subi  r24, lo8(-32)            \n"  // 1
+      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   sts   %[ocrHigh], r25          \n"  // 2
+      "   sts   %[ocrLow], r24           \n"  // 2
+      "   lds   r24, %[missed]           \n"  // 2  and it is counted
+      "   lds   r25, %[missed] + 1       \n"  // 2
+      "   adiw  r24, 1                   \n"  // 2
+      "   sts   %[missed], r24           \n"  // 2
+      "   sts   %[missed] + 1, r25       \n"  // 2
+      "   rjmp  12b                      \n"  // 2
       :
       :
         [sreg] "I"(_SFR_IO_ADDR(SREG)),
@@ -1793,6 +1421,7 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
         [ocrHigh] "n"(_SFR_MEM_ADDR(OCR5CH)),
         [tcntLow] "n"(_SFR_MEM_ADDR(TCNT5L)),
         [tcntHigh] "n"(_SFR_MEM_ADDR(TCNT5H)),
+        [tifr] "I"(_SFR_IO_ADDR(TIFR5)),
         [due] "i"(&zMotion.due),
         [fraction] "i"(&zMotion.dueFraction),
         [interval] "i"(&zMotion.interval),
@@ -1800,28 +1429,10 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
         [levels] "i"(&zMotion.levels),
         [change] "i"(&zMotion.change),
         [length] "i"(&zMotion.length),
+        [missed] "i"(&zMotion.missed),
+        [ocf] "n"(OCF5C),
         [port0] "n"(_SFR_MEM_ADDR(PORTL))
       : "memory");
-}
-
-// Brings the place on the ramp up to date with the levels that the interrupt has begun, and tells
-// whether it climbs.
-SHARED bool zSettle() {
-  auto &motion = near(zMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) return false;
-  const uint8_t begun = motion.planned - motion.levels;
-  const uint16_t steps = begun * motion.length;
-  motion.pace = motion.interval;
-  motion.mode = mode & ~(kClimb | kDescend);
-  if (mode & kClimb) {
-    motion.rung += begun;
-    motion.height += steps;
-    return true;
-  }
-  motion.rung -= begun;
-  motion.height -= steps;
-  return false;
 }
 
 // No step comes any more.
@@ -1834,102 +1445,16 @@ INLINE void zRest() {
   zCount = 0;
 }
 
-// Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
-// It climbs while there is room to come down again, so it never has to know how a way goes on.
-SHARED void zDecide() {
-  auto &motion = near(zMotion);
-  if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
-    motion.rest += kFar;  // the end stays far away
-    motion.end += motion.mode & kReverse ? -kFar : kFar;
-  }
-  const uint16_t height = motion.height;
-  const uint16_t goal = motion.goal;
-  uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
-  if (slack > 256UL * kFlatSteps) slack = 256UL * kFlatSteps;
-  const uint16_t room = slack;
-  const bool descends = room == 0 || height > goal;
-  uint16_t way = 0;  // steps down or up
-  uint8_t rung = motion.rung;
-  if (descends) {
-    way = room ? height - goal : 0xFFFF;
-    if (rung == 0) --motion.row;
-  } else if (height < goal) {
-    way = goal - height;
-    if (room / 2 < way) way = room / 2;
-    if (rung == motion.rungs) {
-      ++motion.row;
-      rung = 0;
-    }
-  }
-  const Row row = readRow(zRamp + motion.row);
-  motion.rungs = row.levels;
-  way = levelsIn(way, row);
-  motion.interval = motion.pace;
-  motion.change = 0;
-  uint8_t length = row.steps;
-  uint8_t first = length;  // steps of the first level
-  uint8_t levels;  // and how many follow it
-  if (descends) {
-    if (rung == 0) rung = row.levels;
-    levels = --rung;
-    if (way <= levels) levels = way - 1;
-    motion.height = height - length;
-    motion.change = row.slope;
-    motion.interval += row.slope;
-    motion.mode |= kDescend;
-  } else if (way) {
-    levels = row.levels - rung - 1;
-    if (way <= levels) levels = way - 1;
-    motion.change = -row.slope;
-    motion.mode |= kClimb;
-  } else {
-    if (height == goal) motion.interval = motion.cruise;
-    const uint16_t others = room - 1;
-    length = kFlatSteps;
-    first = others % kFlatSteps + 1;
-    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
-  }
-  if (motion.interval >= kLappedInterval) {  // then each step is a boundary
-    levels = 0;
-    first = 1;
-  }
-  motion.rung = rung;
-  motion.length = length;
-  motion.levels = motion.planned = levels;
-  zCount = first;
-  motion.rest -= static_cast<uint16_t>(levels * length) + first;
-}
-
 // Begins a way from rest to the destination; tells whether there is one.
 SHARED bool zSetOut() {
   auto &motion = near(zMotion);
-  uint32_t way = motion.destination - motion.end;
-  if (way == 0) return false;
   const uint8_t before = motion.mode;
-  uint8_t mode = (before & kEndless) | kRunning;
-  if (way >> 31) {
-    mode |= kReverse;
-    way = -way;
-  }
-  motion.rest = way;
-  motion.end = motion.destination;
-  motion.mode = mode;
+  if (!setOut(motion, kZFirstInterval)) return false;
+  const uint8_t mode = motion.mode;
   if ((before ^ mode) & kReverse) {
     zPoint(mode);
   }
-  motion.row = 0;
-  motion.rung = 0;
-  motion.rungs = 1;
-  motion.height = 0;
-  motion.pace = kZFirstInterval;
-  zDecide();
   return true;
-}
-
-// Goes on to the destination from where a way has ended, or to the next one; tells whether there is
-// one.
-INLINE bool zGoOn() {
-  return zSetOut();
 }
 
 // Where the step interrupt goes on in its rare ways: at the end of a row of levels, where a way
@@ -1937,7 +1462,8 @@ INLINE bool zGoOn() {
 extern "C" void __vector_z_boundary() __attribute__((signal, used, externally_visible));
 void __vector_z_boundary() {
   auto &motion = near(zMotion);
-  if (motion.lapsLeft) {  // no step is due
+  const bool lapped = motion.lapsLeft;
+  if (lapped) {  // no step is due
     zCount = 1;
     --motion.lapsLeft;
     if (motion.lapsLeft == 0 && (motion.mode & kCoast)) {
@@ -1947,29 +1473,23 @@ void __vector_z_boundary() {
     }
     motion.due += kLapTicks;
     OCR5C = motion.due;
-    zPassed();
-    return;
+  } else {
+    if (!endLevel(motion)) {  // the way has ended: on to the destination, or to the next one
+      if (!zSetOut()) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        motion.mode = (motion.mode & kReverse) | kCoast;
+        motion.rest = -1;
+        zCount = 1;
+        OCR5C = nextDue(motion);
+        ++motion.lapsLeft;
+        zPassed();
+        return;
+      }
+    }
+    zCount = decide(motion, zRamp);
+    OCR5C = nextDue(motion);
   }
-  if (zSettle()) {  // the level is climbed
-    motion.interval += motion.change;
-    motion.pace = motion.interval;
-    motion.height += motion.length;
-    ++motion.rung;
-  }
-  if (motion.rest) {
-    zDecide();
-  } else if (!zGoOn()) {
-    // The rotor is still on its way: the coils go off one interval after the last step.
-    motion.mode = (motion.mode & kReverse) | kCoast;
-    motion.rest = -1;
-    zCount = 1;
-    zAdvance();
-    ++motion.lapsLeft;
-    zPassed();
-    return;
-  }
-  zAdvance();
-  if (zPassed() && !motion.lapsLeft) ++motion.missed;
+  if (zPassed() && !lapped && !motion.lapsLeft) ++motion.missed;
 }
 
 void zInit() {
@@ -1981,7 +1501,6 @@ void zInit() {
   motion.levels = 0;
   motion.end = 0;
   motion.destination = 0;
-  motion.origin = 0;
   motion.goal = kZCruiseHeight;
   motion.cruise = kZCruiseInterval;
   motion.missed = 0;
@@ -1998,94 +1517,47 @@ void zInit() {
   DDRL |= 0x0A;  // STEP, DIR
 }
 
-// Lets a call in: no level follows the present one, which ends as it was; at constant speed, with
-// the next step. Tells whether the motor climbs. Only while interrupts are off, as what follows.
-SHARED bool zCut() {
-  auto &motion = near(zMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) zCount = 1;
-  const bool climbs = zSettle();
-  motion.mode |= mode & kDescend;
-  motion.levels = motion.planned = 0;
-  return climbs;
-}
-
-// Goes on from here for so many steps.
-SHARED void zLeave(uint32_t here, uint32_t steps) {
-  auto &motion = near(zMotion);
-  motion.end = motion.mode & kReverse ? here - steps : here + steps;
-  motion.rest = steps - zCount;
-}
-
-// Has the motor move from here to a destination: from rest, or in mid-way.
-SHARED void zAim(uint32_t here, uint32_t destination, uint8_t endless) {
+// Has the motor move to a destination: from rest, or in mid-way. Only while interrupts are off.
+SHARED void zAim(uint32_t destination, uint8_t endless) {
   auto &motion = near(zMotion);
   if (motion.mode & kRunning) {
-    motion.destination = destination;
-    const bool climbs = zCut();
-    uint8_t mode = (motion.mode & ~(kEndless | kTurning)) | endless;
-    const int32_t ahead = mode & kReverse ? here - destination : destination - here;
-    uint32_t steps = motion.height + zCount;  // it takes to come to rest
-    if (climbs) {
-      if (ahead >= static_cast<int32_t>(steps + motion.length)) {
-        mode |= kClimb;
-      } else {
-        zCount = 1;
-        steps = motion.height + 1UL;
-      }
-    }
-    if (ahead >= static_cast<int32_t>(steps)) {
-      steps = ahead;
-    } else {
-      mode |= kTurning;
-    }
-    motion.mode = mode;
-    zLeave(here, steps);
-  } else if (destination != here) {
+    zCount = redirect(motion, zCount, destination, endless);
+  } else if (destination != motion.end) {
     zStopTimer();
     zEnergise();
     motion.destination = destination;
-    motion.end = here;
     motion.mode = (motion.mode & kReverse) | endless;
     zSetOut();
+    zCount = decide(motion, zRamp);
     zRunTimer();
   }
 }
 
 int8_t zMoveTo(int32_t target) {
   const Masked masked;
-  zAim(zPosition(), zMotion.origin + target, 0);
+  zAim(target, 0);
   return 0;
 }
 
 int8_t zMove(int32_t steps) {
   const Masked masked;
-  const uint32_t here = zPosition();
-  zAim(here, here + steps, 0);
+  zAim(zPosition() + steps, 0);
   return 0;
 }
 
 void zRunForward() {
   const Masked masked;
-  const uint32_t here = zPosition();
-  zAim(here, here + kFar, kEndless);
+  zAim(zPosition() + kFar, kEndless);
 }
 
 void zRunBackward() {
   const Masked masked;
-  const uint32_t here = zPosition();
-  zAim(here, here - kFar, kEndless);
+  zAim(zPosition() - kFar, kEndless);
 }
 
 void zStop() {
   const Masked masked;
-  auto &motion = near(zMotion);
-  if (!(motion.mode & kRunning)) return;
-  const uint32_t here = zPosition();
-  if (zCut()) zCount = 1;
-  motion.mode &= ~(kEndless | kTurning);
-  zLeave(here, static_cast<uint32_t>(motion.height) + zCount);
-  motion.destination = motion.end;
+  zCount = comeToRest(zMotion, zCount);
 }
 
 void zHalt() {
@@ -2096,45 +1568,11 @@ void zHalt() {
   zRest();
 }
 
-// How high the motor may climb for a speed: to the last level that is not faster.
-static uint16_t zHeightFor(uint32_t interval) {
-  uint16_t height = 0;
-  uint32_t pace = kZFirstInterval;
-  for (const PackedRow *packed = zRamp; packed < zRamp + 57; ++packed) {
-    const Row row = readRow(packed);
-    const uint32_t top = pace - row.slope * row.levels;
-    if (top < interval) {  // in this row: bit by bit, how many of its levels
-      uint8_t levels = 0;
-      for (uint8_t more = 128; more; more >>= 1) {
-        const uint8_t tried = levels + more;
-        if (tried < row.levels && pace - row.slope * tried >= interval) levels = tried;
-      }
-      return height + levels * row.steps;
-    }
-    height += row.levels * row.steps;
-    pace = top;
-  }
-  return height;
-}
-
 int8_t zSetSpeed(uint32_t interval) {
   if (interval < kZCruiseInterval) return MOTOR_ERROR_TOO_FAST;
-  const uint16_t goal = zHeightFor(interval);
+  const uint16_t goal = heightFor(zRamp, 57, kZFirstInterval, interval);
   const Masked masked;
-  auto &motion = near(zMotion);
-  motion.goal = goal;
-  motion.cruise = interval;
-  if (motion.mode & kRunning) {
-    const uint32_t left = zLeft();
-    if (zCut()) {
-      if (goal >= motion.height + motion.length) {
-        motion.mode |= kClimb;
-      } else {
-        zCount = 1;
-      }
-    }
-    motion.rest = left - zCount;
-  }
+  zCount = cruiseAt(zMotion, zCount, interval, goal);
   return 0;
 }
 
@@ -2147,12 +1585,12 @@ INLINE uint32_t zTarget() {
 
 int32_t zCurrentPosition() {
   const Masked masked;
-  return zPosition() - zMotion.origin;
+  return zPosition();
 }
 
 int32_t zTargetPosition() {
   const Masked masked;
-  return zTarget() - zMotion.origin;
+  return zTarget();
 }
 
 int32_t zDistanceToGo() {
@@ -2169,7 +1607,7 @@ int8_t zSetCurrentPosition(int32_t position) {
   const Masked masked;
   auto &motion = near(zMotion);
   if (motion.mode & kRunning) return MOTOR_ERROR_RUNNING;
-  motion.origin = zPosition() - position;
+  motion.end = motion.destination = position;
   return 0;
 }
 

@@ -52,17 +52,14 @@ struct AxisMotion {
   uint32_t interval;  // the one in use
   uint32_t change;  // what the interrupt adds to it for the next level
   uint8_t length;  // steps of a level
-  uint8_t levels;  // levels that the interrupt will begin by itself,
-  uint8_t planned;  // and how many these were at first
+  uint8_t levels;  // levels that the interrupt will begin by itself
   uint32_t rest;  // steps of this way after those levels
   uint32_t end;  // the position when all are made
   uint32_t destination;  // where to go in the end
-  uint32_t origin;  // the position that the sketch calls 0
-  uint8_t row;  // where it is on the ramp: the row,
+  uint8_t row;  // where it is on the ramp, or will be after those levels: the row,
   uint8_t rung;  // the level in it,
-  uint8_t rungs;  // of so many,
   uint16_t height;  // how many steps it takes from there to rest,
-  uint32_t pace;  // and the interval there
+  uint32_t pace;  // and the interval there, once they are made
   uint16_t goal;  // how high it may climb, in steps,
   uint32_t cruise;  // and the interval there
   uint8_t dueFraction;  // when the next interrupt is due: 1/256 clocks,
@@ -71,41 +68,294 @@ struct AxisMotion {
   uint16_t missed;  // steps that were due before the step before was made
 };
 
-// A row of a ramp: levels of equal length, whose intervals differ by the same slope.
-struct Row {
-  uint8_t levels;
-  uint8_t steps;  // of a level: a power of two
-  uint8_t share;  // 256 / steps, which is 0 for 256
-  uint32_t slope;  // in 1/256 clocks
-};
-
-// Rows in flash: the levels; the shift in the lower bits, and in the upper ones by how many bytes
-// the slope is shifted; the slope.
-struct PackedRow {
-  uint8_t levels;
-  uint8_t shifts;
-  uint16_t slope;
-};
-
-static const uint8_t kPowers[] PROGMEM = {1, 2, 4, 8, 16, 32, 64, 128, 0};
-
-INLINE Row readRow(const PackedRow *packed) {
-  const uint8_t shifts = pgm_read_byte(&packed->shifts);
-  uint32_t slope = pgm_read_word(&packed->slope);
-  if (shifts & 0x10) slope <<= 8;
-  if (shifts & 0x20) slope <<= 16;
-  const uint8_t *power = kPowers + (shifts & 0x0F);
-  const uint8_t *share = kPowers + 8 - (shifts & 0x0F);
-  return {pgm_read_byte(&packed->levels), pgm_read_byte(power), pgm_read_byte(share), slope};
+// When the channel is to match next: one interval after it was last due; a long one begins with
+// 16384 to 32767 clocks, and laps follow. Only while interrupts are off.
+SHARED uint16_t nextDue(AxisMotion &axis) {
+  auto &motion = near(axis);
+  const uint32_t interval = motion.interval;
+  uint16_t ticks = interval >> 8;
+  uint16_t laps = 0;
+  if (interval >= kLappedInterval) {
+    const uint16_t high = interval >> 16;
+    laps = (high >> 6) - 1;
+    ticks = (ticks & (kLapTicks - 1)) | kLapTicks;
+  }
+  motion.lapsLeft = laps;
+  const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);
+  motion.dueFraction = fraction;
+  const uint16_t due = motion.due + ticks + (fraction >> 8);
+  motion.due = due;
+  return due;
 }
 
-// How many whole levels of a row so many steps are.
-INLINE uint16_t levelsIn(uint16_t steps, const Row &row) {
-  return row.share ? static_cast<uint32_t>(steps) * row.share >> 8 : steps;
+// A row of a ramp in flash: levels of equal length, whose intervals differ by the same slope.
+struct Row {
+  uint8_t levels;
+  uint8_t shifts;  // steps of a level: 1 << bits 0 to 2; bytes to shift the slope by: bits 4 and 5
+  uint16_t slope;  // in 1/256 clocks
+};
+
+static const uint8_t kPowers[] PROGMEM = {1, 2, 4, 8, 16, 32, 64, 128};
+
+// Steps of a level.
+INLINE uint8_t stepsOf(uint8_t shifts) { return pgm_read_byte(kPowers + (shifts & 7)); }
+
+// How many whole levels so many steps are.
+INLINE uint16_t levelsIn(uint16_t steps, uint8_t shifts) {
+  if (shifts & 1) steps >>= 1;
+  if (shifts & 2) steps >>= 2;
+  if (shifts & 4) steps >>= 4;
+  return steps;
+}
+
+INLINE uint32_t slopeOf(const Row *row, uint8_t shifts) {
+  uint32_t slope = pgm_read_word(&row->slope);
+  if (shifts & 0x10) slope <<= 8;
+  if (shifts & 0x20) slope <<= 16;
+  return slope;
 }
 
 constexpr uint32_t kFar = 1UL << 30;  // steps ahead of a motor that runs without an end
 constexpr uint8_t kFlatSteps = 128;  // a level of constant speed
+
+// What follows is the same for each motor with ramps. It works only while interrupts are off, and
+// what it calls count is the steps that are left of the present level, which the motor keeps.
+
+// Steps that are left of this way.
+INLINE uint32_t stepsLeft(const AxisMotion &motion, uint8_t count) {
+  const uint16_t steps = motion.levels * motion.length;
+  return motion.rest + static_cast<uint16_t>(steps + count);
+}
+
+// Where the motor is: the end of its way less what is left.
+SHARED uint32_t positionOf(AxisMotion &axis, uint8_t count) {
+  auto &motion = near(axis);
+  const uint32_t left = stepsLeft(motion, count);
+  return motion.mode & kReverse ? motion.end + left : motion.end - left;
+}
+
+// Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
+// It climbs while there is room to come down again, so it never has to know how a way goes on.
+// Returns the steps of the first level.
+SHARED uint8_t decide(AxisMotion &axis, const Row *ramp) {
+  auto &motion = near(axis);
+  uint16_t height = motion.height;
+  const uint16_t goal = motion.goal;
+  const uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
+  const uint16_t room = slack > 0x7FFF ? 0x8000 : slack;
+  const Row *row = ramp + motion.row;
+  uint8_t rung = motion.rung;
+  uint8_t rungs = pgm_read_byte(&row->levels);
+  uint16_t way = 0;  // steps down or up
+  uint8_t mode = 0;
+  if (room == 0 || height > goal) {
+    mode = kDescend;
+    way = room ? height - goal : 0xFFFF;
+    if (rung == 0) {
+      --motion.row;
+      --row;
+      rung = pgm_read_byte(&row->levels);
+    }
+  } else if (height < goal) {
+    mode = kClimb;
+    way = goal - height;
+    if (room / 2 < way) way = room / 2;
+    if (rung == rungs) {
+      ++motion.row;
+      ++row;
+      rungs = pgm_read_byte(&row->levels);
+      rung = 0;
+    }
+  }
+  const uint8_t shifts = pgm_read_byte(&row->shifts);
+  uint8_t length = stepsOf(shifts);
+  uint8_t first = length;
+  uint8_t levels;  // how many follow the first one
+  uint32_t change = 0;
+  uint32_t interval = motion.pace;
+  way = levelsIn(way, shifts);
+  if (way) {
+    change = slopeOf(row, shifts);
+    levels = rungs - rung - 1;
+    if (mode == kDescend) {
+      levels = rung - 1;
+      interval += change;
+    }
+    if (way <= levels) levels = way - 1;
+  } else {
+    mode = 0;
+    if (height == goal) interval = motion.cruise;
+    const uint16_t others = room - 1;
+    length = kFlatSteps;
+    first = others % kFlatSteps + 1;
+    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
+    if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
+      motion.rest += kFar;  // the end stays far away
+      motion.end += motion.mode & kReverse ? -kFar : kFar;
+    }
+  }
+  if (interval >= kLappedInterval) {  // then each step is a boundary
+    levels = 0;
+    first = 1;
+  }
+  const uint16_t steps = levels * length;
+  if (mode == kClimb) {
+    change = -change;
+    rung += levels;
+    height += steps;
+  } else if (mode) {
+    rung -= levels + 1;
+    height -= steps + length;
+  }
+  motion.mode |= mode;
+  motion.interval = interval;
+  motion.change = change;
+  motion.length = length;
+  motion.levels = levels;
+  motion.rung = rung;
+  motion.height = height;
+  motion.rest -= steps + first;
+  return first;
+}
+
+// Ends a level; tells whether more steps of the way follow.
+SHARED bool endLevel(AxisMotion &axis) {
+  auto &motion = near(axis);
+  const uint8_t mode = motion.mode;
+  if (mode & (kClimb | kDescend)) {
+    uint32_t pace = motion.interval;
+    if (mode & kClimb) {  // it is as fast as the level above now
+      pace += motion.change;
+      motion.height += motion.length;
+      ++motion.rung;
+    }
+    motion.pace = pace;
+    motion.mode = mode & ~(kClimb | kDescend);
+  }
+  return motion.rest;
+}
+
+// Begins a way from rest to the destination; tells whether there is one.
+SHARED bool setOut(AxisMotion &axis, uint32_t firstInterval) {
+  auto &motion = near(axis);
+  uint32_t way = motion.destination - motion.end;
+  if (way == 0) return false;
+  uint8_t mode = (motion.mode & kEndless) | kRunning;
+  if (way >> 31) {
+    mode |= kReverse;
+    way = -way;
+  }
+  motion.rest = way;
+  motion.end = motion.destination;
+  motion.mode = mode;
+  motion.row = 0;
+  motion.rung = 0;
+  motion.height = 0;
+  motion.pace = firstInterval;
+  return true;
+}
+
+// Lets a call in: no level follows the present one, which ends as it was; at constant speed, with
+// the next step. Returns the count; *climbs* tells whether the level goes up.
+INLINE uint8_t cut(AxisMotion &motion, uint8_t count, bool &climbs) {
+  const uint8_t mode = motion.mode;
+  const uint8_t levels = motion.levels;
+  motion.levels = 0;
+  climbs = mode & kClimb;
+  if (!(mode & (kClimb | kDescend))) return 1;
+  motion.pace = motion.interval;
+  const uint16_t steps = levels * motion.length;
+  if (climbs) {
+    motion.rung -= levels;
+    motion.height -= steps;
+    motion.mode = mode & ~kClimb;
+  } else {
+    motion.rung += levels;
+    motion.height += steps;
+  }
+  return count;
+}
+
+// Goes on from here for so many steps.
+INLINE void leave(AxisMotion &motion, uint32_t here, uint32_t steps, uint8_t count) {
+  motion.end = motion.mode & kReverse ? here - steps : here + steps;
+  motion.rest = steps - count;
+}
+
+// Has the motor move to another destination in mid-way. Returns the count.
+SHARED uint8_t redirect(AxisMotion &axis, uint8_t count, uint32_t destination, uint8_t endless) {
+  auto &motion = near(axis);
+  const uint32_t here = positionOf(motion, count);
+  motion.destination = destination;
+  bool climbs;
+  count = cut(motion, count, climbs);
+  uint8_t mode = (motion.mode & ~(kEndless | kTurning)) | endless;
+  const int32_t ahead = mode & kReverse ? here - destination : destination - here;
+  if (climbs) {
+    if (ahead >= static_cast<int32_t>(0UL + motion.height + motion.length + count)) {
+      mode |= kClimb;
+    } else {
+      count = 1;
+    }
+  }
+  uint32_t steps = 0UL + motion.height + count;  // it takes to come to rest
+  if (ahead >= static_cast<int32_t>(steps)) {
+    steps = ahead;
+  } else {
+    mode |= kTurning;
+  }
+  motion.mode = mode;
+  leave(motion, here, steps, count);
+  return count;
+}
+
+// Has the motor come to rest. Returns the count.
+SHARED uint8_t comeToRest(AxisMotion &axis, uint8_t count) {
+  auto &motion = near(axis);
+  if (!(motion.mode & kRunning)) return count;
+  count = redirect(motion, count, positionOf(motion, count), 0);
+  motion.mode &= ~kTurning;  // where it comes to rest is where it is to be
+  motion.destination = motion.end;
+  return count;
+}
+
+// How high a motor may climb for a speed: to the last level that is not faster.
+static uint16_t heightFor(const Row *ramp, uint8_t rows, uint32_t pace, uint32_t interval) {
+  uint16_t height = 0;
+  for (; rows; --rows) {
+    const uint8_t rungs = pgm_read_byte(&ramp->levels);
+    const uint8_t shifts = pgm_read_byte(&ramp->shifts);
+    const uint32_t slope = slopeOf(ramp++, shifts);
+    const uint32_t top = pace - slope * rungs;
+    if (top < interval) {  // in this row: so many of its levels
+      for (; pace - slope >= interval; pace -= slope) height += stepsOf(shifts);
+      return height;
+    }
+    height += rungs * stepsOf(shifts);
+    pace = top;
+  }
+  return height;
+}
+
+// Has the motor cruise at a speed, for which it climbs so high. Returns the count.
+static uint8_t cruiseAt(AxisMotion &axis, uint8_t count, uint32_t interval, uint16_t goal) {
+  auto &motion = near(axis);
+  motion.goal = goal;
+  motion.cruise = interval;
+  if (!(motion.mode & kRunning)) return count;
+  const uint32_t left = stepsLeft(motion, count);
+  bool climbs;
+  count = cut(motion, count, climbs);
+  if (climbs) {
+    if (goal >= motion.height + motion.length) {
+      motion.mode |= kClimb;
+    } else {
+      count = 1;
+    }
+  }
+  motion.rest = left - count;
+  return count;
+}
 
 // ---- slide: A4988, 1/16 steps, timer 1 ----
 
@@ -122,7 +372,7 @@ static uint8_t slideQueued;  // and how many there are
 constexpr uint32_t kSlideFirstInterval = 40960000UL;
 constexpr uint32_t kSlideCruiseInterval = 409600UL;
 constexpr uint16_t kSlideCruiseHeight = 2480;  // in steps
-static const PackedRow slideRamp[] PROGMEM = {
+static const Row slideRamp[] PROGMEM = {
     {1, 0x20, 366},  // 1 x 1, 93696 clocks
     {1, 0x10, 15450},  // 1 x 1, 15450 clocks
     {1, 0x10, 7982},  // 1 x 1, 7982 clocks
@@ -198,18 +448,8 @@ INLINE void slideCoilsOff() {
   PORTB |= 0x01;  // ENABLE
 }
 
-// Steps that are left of this way. Only while interrupts are off.
-INLINE uint32_t slideLeft() {
-  auto &motion = near(slideMotion);
-  return motion.rest + static_cast<uint16_t>(motion.levels * motion.length) + GPIOR1;
-}
-
-// Where the motor is: the end of its way less what is left. Only while interrupts are off.
-SHARED uint32_t slidePosition() {
-  auto &motion = near(slideMotion);
-  const uint32_t left = slideLeft();
-  return motion.end + (motion.mode & kReverse ? left : -left);
-}
+// Where the motor is. Only while interrupts are off.
+INLINE uint32_t slidePosition() { return positionOf(slideMotion, GPIOR1); }
 
 // Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void slideEnergise() {
@@ -230,43 +470,17 @@ INLINE bool slidePassed() {
   return true;
 }
 
-// Has the channel match one interval after it was last due; a long one begins with 16384 to 32767
-// clocks, and laps follow.
-SHARED void slideAdvance() {
-  auto &motion = near(slideMotion);
-  const uint32_t interval = motion.interval;
-  uint16_t ticks = interval >> 8;
-  uint16_t laps = 0;
-  if (interval >= kLappedInterval) {
-    const uint16_t high = interval >> 16;
-    laps = (high >> 6) - 1;
-    ticks = (ticks & (kLapTicks - 1)) | kLapTicks;
-  }
-  motion.lapsLeft = laps;
-  const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);
-  motion.dueFraction = fraction;
-  const uint16_t due = motion.due + ticks + (fraction >> 8);
-  motion.due = due;
-  OCR1A = due;
-}
-
 // Starts the first interval from rest, which begins now.
 INLINE void slideRunTimer() {
   auto &motion = near(slideMotion);
   motion.dueFraction = 0;
   motion.due = TCNT1;
-  slideAdvance();
+  OCR1A = nextDue(motion);
   TIFR1 = _BV(OCF1A);  // a match of before makes no step
   TIMSK1 |= _BV(OCIE1A);
 }
 
-// Where the step interrupt goes on when the next step is due already.
-extern "C" void __vector_slide_boundary_late() __attribute__((signal, used, externally_visible));
-void __vector_slide_boundary_late() {
-  if (slidePassed()) ++slideMotion.missed;
-}
-
-// Timer 1 compare match A: one step, 67 cycles from the interrupt's response to RETI; at most 1137
+// Timer 1 compare match A: one step, 67 cycles from the interrupt's response to RETI; at most 993
 // when it goes on in __vector_slide_boundary. STEP rises 17 cycles after the match (27 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port B and D and nothing else that the sketch can see. Behind each instruction stand its
@@ -282,7 +496,7 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   breq  1f                       \n"  // 1  at the end of a level
       "   sbi   %[port0], 2              \n"  // 2  STEP rises: one step
       "   push  r25                      \n"  // 2
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
+      "11: lds   r24, %[fraction]        \n"  // 2  when this step was due, and the interval
       "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
       "   add   r24, r25                 \n"  // 1
       "   sts   %[fraction], r24         \n"  // 2
@@ -302,19 +516,15 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   lds   r24, %[tcntHigh]         \n"  // 2
       "   lds   r25, %[due] + 1          \n"  // 2
       "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
       "   brpl  13f                      \n"  // 1
+      "12: pop   r25                     \n"  // 2
       "   in    r24, %[scratch]          \n"  // 1
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   cbi   %[port0], 2              \n"  // 2  STEP falls
       "   reti                           \n"  // 4
 
-      "13: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   cbi   %[port0], 2              \n"  // 2  STEP falls
-      "   jmp   __vector_slide_boundary_late\n"  // 3
+      "13: rjmp  18f                     \n"  // 2
 
       "1: lds   r24, %[laps]             \n"  // 2  laps of a long interval that are left?
       "   tst   r24                      \n"  // 1
@@ -344,37 +554,7 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   sts   %[interval] + 2, r24     \n"  // 2
       "   lds   r24, %[length]           \n"  // 2  and lasts for so many steps
       "   out   %[count], r24            \n"  // 1
-      "   cbi   %[port0], 2              \n"  // 2  STEP falls
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
-      "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
-      "   add   r24, r25                 \n"  // 1
-      "   sts   %[fraction], r24         \n"  // 2
-      "   lds   r24, %[due]              \n"  // 2  then clocks
-      "   lds   r25, %[interval] + 1     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due], r24              \n"  // 2
-      "   lds   r24, %[due] + 1          \n"  // 2
-      "   lds   r25, %[interval] + 2     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due] + 1, r24          \n"  // 2
-      "   sts   %[ocrHigh], r24          \n"  // 2  waits in TEMP
-      "   lds   r25, %[due]              \n"  // 2
-      "   sts   %[ocrLow], r25           \n"  // 2  the next match is the next step
-      "   lds   r24, %[tcntLow]          \n"  // 2
-      "   sub   r24, r25                 \n"  // 1
-      "   lds   r24, %[tcntHigh]         \n"  // 2
-      "   lds   r25, %[due] + 1          \n"  // 2
-      "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
-      "   brpl  14f                      \n"  // 1
-      "   in    r24, %[scratch]          \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   reti                           \n"  // 4
-      "14: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   jmp   __vector_slide_boundary_late\n"  // 3
+      "   rjmp  11b                      \n"  // 2  the rest is as usual
       "16: pop   r25                     \n"  // 2
       "   rjmp  .+0                      \n"  // 2
       "   rjmp  .+0                      \n"  // 2
@@ -383,6 +563,20 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   jmp   __vector_slide_boundary  \n"  // 3
+      "18: sbic  %[tifr], %[ocf]         \n"  // 1  a match meanwhile is that step
+      "   rjmp  12b                      \n"  // 2
+      "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
+      "   lds   r25, %[tcntHigh]         \n"  // 2
+      "   subi  r24, lo8(-32)            \n"  // 1
+      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   sts   %[ocrHigh], r25          \n"  // 2
+      "   sts   %[ocrLow], r24           \n"  // 2
+      "   lds   r24, %[missed]           \n"  // 2  and it is counted
+      "   lds   r25, %[missed] + 1       \n"  // 2
+      "   adiw  r24, 1                   \n"  // 2
+      "   sts   %[missed], r24           \n"  // 2
+      "   sts   %[missed] + 1, r25       \n"  // 2
+      "   rjmp  12b                      \n"  // 2
       :
       :
         [sreg] "I"(_SFR_IO_ADDR(SREG)),
@@ -392,6 +586,7 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
         [ocrHigh] "n"(_SFR_MEM_ADDR(OCR1AH)),
         [tcntLow] "n"(_SFR_MEM_ADDR(TCNT1L)),
         [tcntHigh] "n"(_SFR_MEM_ADDR(TCNT1H)),
+        [tifr] "I"(_SFR_IO_ADDR(TIFR1)),
         [due] "i"(&slideMotion.due),
         [fraction] "i"(&slideMotion.dueFraction),
         [interval] "i"(&slideMotion.interval),
@@ -399,28 +594,10 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
         [levels] "i"(&slideMotion.levels),
         [change] "i"(&slideMotion.change),
         [length] "i"(&slideMotion.length),
+        [missed] "i"(&slideMotion.missed),
+        [ocf] "n"(OCF1A),
         [port0] "I"(_SFR_IO_ADDR(PORTD))
       : "memory");
-}
-
-// Brings the place on the ramp up to date with the levels that the interrupt has begun, and tells
-// whether it climbs.
-SHARED bool slideSettle() {
-  auto &motion = near(slideMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) return false;
-  const uint8_t begun = motion.planned - motion.levels;
-  const uint16_t steps = begun * motion.length;
-  motion.pace = motion.interval;
-  motion.mode = mode & ~(kClimb | kDescend);
-  if (mode & kClimb) {
-    motion.rung += begun;
-    motion.height += steps;
-    return true;
-  }
-  motion.rung -= begun;
-  motion.height -= steps;
-  return false;
 }
 
 // No step comes any more.
@@ -439,108 +616,16 @@ INLINE uint8_t slidePlace(uint8_t behind) {
   return place < 8 ? place : place - 8;
 }
 
-// Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
-// It climbs while there is room to come down again, so it never has to know how a way goes on.
-SHARED void slideDecide() {
-  auto &motion = near(slideMotion);
-  if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
-    motion.rest += kFar;  // the end stays far away
-    motion.end += motion.mode & kReverse ? -kFar : kFar;
-  }
-  const uint16_t height = motion.height;
-  const uint16_t goal = motion.goal;
-  uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
-  if (slack > 256UL * kFlatSteps) slack = 256UL * kFlatSteps;
-  const uint16_t room = slack;
-  const bool descends = room == 0 || height > goal;
-  uint16_t way = 0;  // steps down or up
-  uint8_t rung = motion.rung;
-  if (descends) {
-    way = room ? height - goal : 0xFFFF;
-    if (rung == 0) --motion.row;
-  } else if (height < goal) {
-    way = goal - height;
-    if (room / 2 < way) way = room / 2;
-    if (rung == motion.rungs) {
-      ++motion.row;
-      rung = 0;
-    }
-  }
-  const Row row = readRow(slideRamp + motion.row);
-  motion.rungs = row.levels;
-  way = levelsIn(way, row);
-  motion.interval = motion.pace;
-  motion.change = 0;
-  uint8_t length = row.steps;
-  uint8_t first = length;  // steps of the first level
-  uint8_t levels;  // and how many follow it
-  if (descends) {
-    if (rung == 0) rung = row.levels;
-    levels = --rung;
-    if (way <= levels) levels = way - 1;
-    motion.height = height - length;
-    motion.change = row.slope;
-    motion.interval += row.slope;
-    motion.mode |= kDescend;
-  } else if (way) {
-    levels = row.levels - rung - 1;
-    if (way <= levels) levels = way - 1;
-    motion.change = -row.slope;
-    motion.mode |= kClimb;
-  } else {
-    if (height == goal) motion.interval = motion.cruise;
-    const uint16_t others = room - 1;
-    length = kFlatSteps;
-    first = others % kFlatSteps + 1;
-    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
-  }
-  if (motion.interval >= kLappedInterval) {  // then each step is a boundary
-    levels = 0;
-    first = 1;
-  }
-  motion.rung = rung;
-  motion.length = length;
-  motion.levels = motion.planned = levels;
-  GPIOR1 = first;
-  motion.rest -= static_cast<uint16_t>(levels * length) + first;
-}
-
 // Begins a way from rest to the destination; tells whether there is one.
 SHARED bool slideSetOut() {
   auto &motion = near(slideMotion);
-  uint32_t way = motion.destination - motion.end;
-  if (way == 0) return false;
   const uint8_t before = motion.mode;
-  uint8_t mode = (before & kEndless) | kRunning;
-  if (way >> 31) {
-    mode |= kReverse;
-    way = -way;
-  }
-  motion.rest = way;
-  motion.end = motion.destination;
-  motion.mode = mode;
+  if (!setOut(motion, kSlideFirstInterval)) return false;
+  const uint8_t mode = motion.mode;
   if ((before ^ mode) & kReverse) {
     slidePoint(mode);
   }
-  motion.row = 0;
-  motion.rung = 0;
-  motion.rungs = 1;
-  motion.height = 0;
-  motion.pace = kSlideFirstInterval;
-  slideDecide();
   return true;
-}
-
-// Goes on to the destination from where a way has ended, or to the next one; tells whether there is
-// one.
-INLINE bool slideGoOn() {
-  auto &motion = near(slideMotion);
-  if (motion.destination == motion.end && slideQueued) {
-    motion.destination = slideQueue[slideFirst];
-    slideFirst = slidePlace(1);
-    --slideQueued;
-  }
-  return slideSetOut();
 }
 
 // Where the step interrupt goes on in its rare ways: at the end of a row of levels, where a way
@@ -548,7 +633,8 @@ INLINE bool slideGoOn() {
 extern "C" void __vector_slide_boundary() __attribute__((signal, used, externally_visible));
 void __vector_slide_boundary() {
   auto &motion = near(slideMotion);
-  if (motion.lapsLeft) {  // no step is due
+  const bool lapped = motion.lapsLeft;
+  if (lapped) {  // no step is due
     GPIOR1 = 1;
     --motion.lapsLeft;
     if (motion.lapsLeft == 0 && (motion.mode & kCoast)) {
@@ -558,29 +644,28 @@ void __vector_slide_boundary() {
     }
     motion.due += kLapTicks;
     OCR1A = motion.due;
-    slidePassed();
-    return;
+  } else {
+    if (!endLevel(motion)) {  // the way has ended: on to the destination, or to the next one
+      if (motion.destination == motion.end && slideQueued) {
+        motion.destination = slideQueue[slideFirst];
+        slideFirst = slidePlace(1);
+        --slideQueued;
+      }
+      if (!slideSetOut()) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        motion.mode = (motion.mode & kReverse) | kCoast;
+        motion.rest = -1;
+        GPIOR1 = 1;
+        OCR1A = nextDue(motion);
+        ++motion.lapsLeft;
+        slidePassed();
+        return;
+      }
+    }
+    GPIOR1 = decide(motion, slideRamp);
+    OCR1A = nextDue(motion);
   }
-  if (slideSettle()) {  // the level is climbed
-    motion.interval += motion.change;
-    motion.pace = motion.interval;
-    motion.height += motion.length;
-    ++motion.rung;
-  }
-  if (motion.rest) {
-    slideDecide();
-  } else if (!slideGoOn()) {
-    // The rotor is still on its way: the coils go off one interval after the last step.
-    motion.mode = (motion.mode & kReverse) | kCoast;
-    motion.rest = -1;
-    GPIOR1 = 1;
-    slideAdvance();
-    ++motion.lapsLeft;
-    slidePassed();
-    return;
-  }
-  slideAdvance();
-  if (slidePassed() && !motion.lapsLeft) ++motion.missed;
+  if (slidePassed() && !lapped && !motion.lapsLeft) ++motion.missed;
 }
 
 void slideInit() {
@@ -592,7 +677,6 @@ void slideInit() {
   motion.levels = 0;
   motion.end = 0;
   motion.destination = 0;
-  motion.origin = 0;
   motion.goal = kSlideCruiseHeight;
   motion.cruise = kSlideCruiseInterval;
   slideQueued = 0;
@@ -610,96 +694,49 @@ void slideInit() {
   DDRD |= 0x24;  // STEP, DIR
 }
 
-// Lets a call in: no level follows the present one, which ends as it was; at constant speed, with
-// the next step. Tells whether the motor climbs. Only while interrupts are off, as what follows.
-SHARED bool slideCut() {
-  auto &motion = near(slideMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) GPIOR1 = 1;
-  const bool climbs = slideSettle();
-  motion.mode |= mode & kDescend;
-  motion.levels = motion.planned = 0;
-  return climbs;
-}
-
-// Goes on from here for so many steps.
-SHARED void slideLeave(uint32_t here, uint32_t steps) {
-  auto &motion = near(slideMotion);
-  motion.end = motion.mode & kReverse ? here - steps : here + steps;
-  motion.rest = steps - GPIOR1;
-}
-
-// Has the motor move from here to a destination: from rest, or in mid-way.
-SHARED void slideAim(uint32_t here, uint32_t destination, uint8_t endless) {
+// Has the motor move to a destination: from rest, or in mid-way. Only while interrupts are off.
+SHARED void slideAim(uint32_t destination, uint8_t endless) {
   auto &motion = near(slideMotion);
   slideQueued = 0;
   if (motion.mode & kRunning) {
-    motion.destination = destination;
-    const bool climbs = slideCut();
-    uint8_t mode = (motion.mode & ~(kEndless | kTurning)) | endless;
-    const int32_t ahead = mode & kReverse ? here - destination : destination - here;
-    uint32_t steps = motion.height + GPIOR1;  // it takes to come to rest
-    if (climbs) {
-      if (ahead >= static_cast<int32_t>(steps + motion.length)) {
-        mode |= kClimb;
-      } else {
-        GPIOR1 = 1;
-        steps = motion.height + 1UL;
-      }
-    }
-    if (ahead >= static_cast<int32_t>(steps)) {
-      steps = ahead;
-    } else {
-      mode |= kTurning;
-    }
-    motion.mode = mode;
-    slideLeave(here, steps);
-  } else if (destination != here) {
+    GPIOR1 = redirect(motion, GPIOR1, destination, endless);
+  } else if (destination != motion.end) {
     slideStopTimer();
     slideEnergise();
     motion.destination = destination;
-    motion.end = here;
     motion.mode = (motion.mode & kReverse) | endless;
     slideSetOut();
+    GPIOR1 = decide(motion, slideRamp);
     slideRunTimer();
   }
 }
 
 int8_t slideMoveTo(int32_t target) {
   const Masked masked;
-  slideAim(slidePosition(), slideMotion.origin + target, 0);
+  slideAim(target, 0);
   return 0;
 }
 
 int8_t slideMove(int32_t steps) {
   const Masked masked;
-  const uint32_t here = slidePosition();
-  slideAim(here, here + steps, 0);
+  slideAim(slidePosition() + steps, 0);
   return 0;
 }
 
 void slideRunForward() {
   const Masked masked;
-  const uint32_t here = slidePosition();
-  slideAim(here, here + kFar, kEndless);
+  slideAim(slidePosition() + kFar, kEndless);
 }
 
 void slideRunBackward() {
   const Masked masked;
-  const uint32_t here = slidePosition();
-  slideAim(here, here - kFar, kEndless);
+  slideAim(slidePosition() - kFar, kEndless);
 }
 
 void slideStop() {
   const Masked masked;
   slideQueued = 0;
-  auto &motion = near(slideMotion);
-  if (!(motion.mode & kRunning)) return;
-  const uint32_t here = slidePosition();
-  if (slideCut()) GPIOR1 = 1;
-  motion.mode &= ~(kEndless | kTurning);
-  slideLeave(here, static_cast<uint32_t>(motion.height) + GPIOR1);
-  motion.destination = motion.end;
+  GPIOR1 = comeToRest(slideMotion, GPIOR1);
 }
 
 void slideHalt() {
@@ -711,45 +748,11 @@ void slideHalt() {
   slideRest();
 }
 
-// How high the motor may climb for a speed: to the last level that is not faster.
-static uint16_t slideHeightFor(uint32_t interval) {
-  uint16_t height = 0;
-  uint32_t pace = kSlideFirstInterval;
-  for (const PackedRow *packed = slideRamp; packed < slideRamp + 59; ++packed) {
-    const Row row = readRow(packed);
-    const uint32_t top = pace - row.slope * row.levels;
-    if (top < interval) {  // in this row: bit by bit, how many of its levels
-      uint8_t levels = 0;
-      for (uint8_t more = 128; more; more >>= 1) {
-        const uint8_t tried = levels + more;
-        if (tried < row.levels && pace - row.slope * tried >= interval) levels = tried;
-      }
-      return height + levels * row.steps;
-    }
-    height += row.levels * row.steps;
-    pace = top;
-  }
-  return height;
-}
-
 int8_t slideSetSpeed(uint32_t interval) {
   if (interval < kSlideCruiseInterval) return MOTOR_ERROR_TOO_FAST;
-  const uint16_t goal = slideHeightFor(interval);
+  const uint16_t goal = heightFor(slideRamp, 59, kSlideFirstInterval, interval);
   const Masked masked;
-  auto &motion = near(slideMotion);
-  motion.goal = goal;
-  motion.cruise = interval;
-  if (motion.mode & kRunning) {
-    const uint32_t left = slideLeft();
-    if (slideCut()) {
-      if (goal >= motion.height + motion.length) {
-        motion.mode |= kClimb;
-      } else {
-        GPIOR1 = 1;
-      }
-    }
-    motion.rest = left - GPIOR1;
-  }
+  GPIOR1 = cruiseAt(slideMotion, GPIOR1, interval, goal);
   return 0;
 }
 
@@ -764,9 +767,9 @@ INLINE uint32_t slideTarget() {
 int8_t slideQueueMoveTo(int32_t target) {
   const Masked masked;
   auto &motion = near(slideMotion);
-  const uint32_t destination = motion.origin + target;
+  const uint32_t destination = target;
   if (!(motion.mode & kRunning)) {
-    slideAim(slidePosition(), destination, 0);
+    slideAim(destination, 0);
     return 0;
   }
   if (motion.mode & kEndless) return MOTOR_ERROR_RUNNING;
@@ -779,12 +782,12 @@ int8_t slideQueueMoveTo(int32_t target) {
 
 int32_t slideCurrentPosition() {
   const Masked masked;
-  return slidePosition() - slideMotion.origin;
+  return slidePosition();
 }
 
 int32_t slideTargetPosition() {
   const Masked masked;
-  return slideTarget() - slideMotion.origin;
+  return slideTarget();
 }
 
 int32_t slideDistanceToGo() {
@@ -801,7 +804,7 @@ int8_t slideSetCurrentPosition(int32_t position) {
   const Masked masked;
   auto &motion = near(slideMotion);
   if (motion.mode & kRunning) return MOTOR_ERROR_RUNNING;
-  motion.origin = slidePosition() - position;
+  motion.end = motion.destination = position;
   return 0;
 }
 

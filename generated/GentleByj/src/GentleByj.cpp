@@ -92,17 +92,14 @@ struct AxisMotion {
   uint32_t interval;  // the one in use
   uint32_t change;  // what the interrupt adds to it for the next level
   uint8_t length;  // steps of a level
-  uint8_t levels;  // levels that the interrupt will begin by itself,
-  uint8_t planned;  // and how many these were at first
+  uint8_t levels;  // levels that the interrupt will begin by itself
   uint32_t rest;  // steps of this way after those levels
   uint32_t end;  // the position when all are made
   uint32_t destination;  // where to go in the end
-  uint32_t origin;  // the position that the sketch calls 0
-  uint8_t row;  // where it is on the ramp: the row,
+  uint8_t row;  // where it is on the ramp, or will be after those levels: the row,
   uint8_t rung;  // the level in it,
-  uint8_t rungs;  // of so many,
   uint16_t height;  // how many steps it takes from there to rest,
-  uint32_t pace;  // and the interval there
+  uint32_t pace;  // and the interval there, once they are made
   uint16_t goal;  // how high it may climb, in steps,
   uint32_t cruise;  // and the interval there
   uint8_t dueFraction;  // when the next interrupt is due: 1/256 clocks,
@@ -111,47 +108,300 @@ struct AxisMotion {
   uint16_t missed;  // steps that were due before the step before was made
 };
 
+// When the channel is to match next: one interval after it was last due; a long one begins with
+// 16384 to 32767 clocks, and laps follow. Only while interrupts are off.
+SHARED uint16_t nextDue(AxisMotion &axis) {
+  auto &motion = near(axis);
+  const uint32_t interval = motion.interval;
+  uint16_t ticks = interval >> 8;
+  uint16_t laps = 0;
+  if (interval >= kLappedInterval) {
+    const uint16_t high = interval >> 16;
+    laps = (high >> 6) - 1;
+    ticks = (ticks & (kLapTicks - 1)) | kLapTicks;
+  }
+  motion.lapsLeft = laps;
+  const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);
+  motion.dueFraction = fraction;
+  const uint16_t due = motion.due + ticks + (fraction >> 8);
+  motion.due = due;
+  return due;
+}
+
 // The lower 16 bits of millis(). Only while interrupts are off.
 INLINE uint16_t millisCount() {
   typedef const volatile uint16_t __attribute__((may_alias)) LowerHalf;
   return *reinterpret_cast<LowerHalf *>(&timer0_millis);
 }
 
-// A row of a ramp: levels of equal length, whose intervals differ by the same slope.
+// A row of a ramp in flash: levels of equal length, whose intervals differ by the same slope.
 struct Row {
   uint8_t levels;
-  uint8_t steps;  // of a level: a power of two
-  uint8_t share;  // 256 / steps, which is 0 for 256
-  uint32_t slope;  // in 1/256 clocks
+  uint8_t shifts;  // steps of a level: 1 << bits 0 to 2; bytes to shift the slope by: bits 4 and 5
+  uint16_t slope;  // in 1/256 clocks
 };
 
-// Rows in flash: the levels; the shift in the lower bits, and in the upper ones by how many bytes
-// the slope is shifted; the slope.
-struct PackedRow {
-  uint8_t levels;
-  uint8_t shifts;
-  uint16_t slope;
-};
+static const uint8_t kPowers[] PROGMEM = {1, 2, 4, 8, 16, 32, 64, 128};
 
-static const uint8_t kPowers[] PROGMEM = {1, 2, 4, 8, 16, 32, 64, 128, 0};
+// Steps of a level.
+INLINE uint8_t stepsOf(uint8_t shifts) { return pgm_read_byte(kPowers + (shifts & 7)); }
 
-INLINE Row readRow(const PackedRow *packed) {
-  const uint8_t shifts = pgm_read_byte(&packed->shifts);
-  uint32_t slope = pgm_read_word(&packed->slope);
-  if (shifts & 0x10) slope <<= 8;
-  if (shifts & 0x20) slope <<= 16;
-  const uint8_t *power = kPowers + (shifts & 0x0F);
-  const uint8_t *share = kPowers + 8 - (shifts & 0x0F);
-  return {pgm_read_byte(&packed->levels), pgm_read_byte(power), pgm_read_byte(share), slope};
+// How many whole levels so many steps are.
+INLINE uint16_t levelsIn(uint16_t steps, uint8_t shifts) {
+  if (shifts & 1) steps >>= 1;
+  if (shifts & 2) steps >>= 2;
+  if (shifts & 4) steps >>= 4;
+  return steps;
 }
 
-// How many whole levels of a row so many steps are.
-INLINE uint16_t levelsIn(uint16_t steps, const Row &row) {
-  return row.share ? static_cast<uint32_t>(steps) * row.share >> 8 : steps;
+INLINE uint32_t slopeOf(const Row *row, uint8_t shifts) {
+  uint32_t slope = pgm_read_word(&row->slope);
+  if (shifts & 0x10) slope <<= 8;
+  if (shifts & 0x20) slope <<= 16;
+  return slope;
 }
 
 constexpr uint32_t kFar = 1UL << 30;  // steps ahead of a motor that runs without an end
 constexpr uint8_t kFlatSteps = 128;  // a level of constant speed
+
+// What follows is the same for each motor with ramps. It works only while interrupts are off, and
+// what it calls count is the steps that are left of the present level, which the motor keeps.
+
+// Steps that are left of this way.
+INLINE uint32_t stepsLeft(const AxisMotion &motion, uint8_t count) {
+  const uint16_t steps = motion.levels * motion.length;
+  return motion.rest + static_cast<uint16_t>(steps + count);
+}
+
+// Where the motor is: the end of its way less what is left.
+SHARED uint32_t positionOf(AxisMotion &axis, uint8_t count) {
+  auto &motion = near(axis);
+  const uint32_t left = stepsLeft(motion, count);
+  return motion.mode & kReverse ? motion.end + left : motion.end - left;
+}
+
+// Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
+// It climbs while there is room to come down again, so it never has to know how a way goes on.
+// Returns the steps of the first level.
+SHARED uint8_t decide(AxisMotion &axis, const Row *ramp) {
+  auto &motion = near(axis);
+  uint16_t height = motion.height;
+  const uint16_t goal = motion.goal;
+  const uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
+  const uint16_t room = slack > 0x7FFF ? 0x8000 : slack;
+  const Row *row = ramp + motion.row;
+  uint8_t rung = motion.rung;
+  uint8_t rungs = pgm_read_byte(&row->levels);
+  uint16_t way = 0;  // steps down or up
+  uint8_t mode = 0;
+  if (room == 0 || height > goal) {
+    mode = kDescend;
+    way = room ? height - goal : 0xFFFF;
+    if (rung == 0) {
+      --motion.row;
+      --row;
+      rung = pgm_read_byte(&row->levels);
+    }
+  } else if (height < goal) {
+    mode = kClimb;
+    way = goal - height;
+    if (room / 2 < way) way = room / 2;
+    if (rung == rungs) {
+      ++motion.row;
+      ++row;
+      rungs = pgm_read_byte(&row->levels);
+      rung = 0;
+    }
+  }
+  const uint8_t shifts = pgm_read_byte(&row->shifts);
+  uint8_t length = stepsOf(shifts);
+  uint8_t first = length;
+  uint8_t levels;  // how many follow the first one
+  uint32_t change = 0;
+  uint32_t interval = motion.pace;
+  way = levelsIn(way, shifts);
+  if (way) {
+    change = slopeOf(row, shifts);
+    levels = rungs - rung - 1;
+    if (mode == kDescend) {
+      levels = rung - 1;
+      interval += change;
+    }
+    if (way <= levels) levels = way - 1;
+  } else {
+    mode = 0;
+    if (height == goal) interval = motion.cruise;
+    const uint16_t others = room - 1;
+    length = kFlatSteps;
+    first = others % kFlatSteps + 1;
+    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
+    if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
+      motion.rest += kFar;  // the end stays far away
+      motion.end += motion.mode & kReverse ? -kFar : kFar;
+    }
+  }
+  if (interval >= kLappedInterval) {  // then each step is a boundary
+    levels = 0;
+    first = 1;
+  }
+  const uint16_t steps = levels * length;
+  if (mode == kClimb) {
+    change = -change;
+    rung += levels;
+    height += steps;
+  } else if (mode) {
+    rung -= levels + 1;
+    height -= steps + length;
+  }
+  motion.mode |= mode;
+  motion.interval = interval;
+  motion.change = change;
+  motion.length = length;
+  motion.levels = levels;
+  motion.rung = rung;
+  motion.height = height;
+  motion.rest -= steps + first;
+  return first;
+}
+
+// Ends a level; tells whether more steps of the way follow.
+SHARED bool endLevel(AxisMotion &axis) {
+  auto &motion = near(axis);
+  const uint8_t mode = motion.mode;
+  if (mode & (kClimb | kDescend)) {
+    uint32_t pace = motion.interval;
+    if (mode & kClimb) {  // it is as fast as the level above now
+      pace += motion.change;
+      motion.height += motion.length;
+      ++motion.rung;
+    }
+    motion.pace = pace;
+    motion.mode = mode & ~(kClimb | kDescend);
+  }
+  return motion.rest;
+}
+
+// Begins a way from rest to the destination; tells whether there is one.
+SHARED bool setOut(AxisMotion &axis, uint32_t firstInterval) {
+  auto &motion = near(axis);
+  uint32_t way = motion.destination - motion.end;
+  if (way == 0) return false;
+  uint8_t mode = (motion.mode & kEndless) | kRunning;
+  if (way >> 31) {
+    mode |= kReverse;
+    way = -way;
+  }
+  motion.rest = way;
+  motion.end = motion.destination;
+  motion.mode = mode;
+  motion.row = 0;
+  motion.rung = 0;
+  motion.height = 0;
+  motion.pace = firstInterval;
+  return true;
+}
+
+// Lets a call in: no level follows the present one, which ends as it was; at constant speed, with
+// the next step. Returns the count; *climbs* tells whether the level goes up.
+INLINE uint8_t cut(AxisMotion &motion, uint8_t count, bool &climbs) {
+  const uint8_t mode = motion.mode;
+  const uint8_t levels = motion.levels;
+  motion.levels = 0;
+  climbs = mode & kClimb;
+  if (!(mode & (kClimb | kDescend))) return 1;
+  motion.pace = motion.interval;
+  const uint16_t steps = levels * motion.length;
+  if (climbs) {
+    motion.rung -= levels;
+    motion.height -= steps;
+    motion.mode = mode & ~kClimb;
+  } else {
+    motion.rung += levels;
+    motion.height += steps;
+  }
+  return count;
+}
+
+// Goes on from here for so many steps.
+INLINE void leave(AxisMotion &motion, uint32_t here, uint32_t steps, uint8_t count) {
+  motion.end = motion.mode & kReverse ? here - steps : here + steps;
+  motion.rest = steps - count;
+}
+
+// Has the motor move to another destination in mid-way. Returns the count.
+SHARED uint8_t redirect(AxisMotion &axis, uint8_t count, uint32_t destination, uint8_t endless) {
+  auto &motion = near(axis);
+  const uint32_t here = positionOf(motion, count);
+  motion.destination = destination;
+  bool climbs;
+  count = cut(motion, count, climbs);
+  uint8_t mode = (motion.mode & ~(kEndless | kTurning)) | endless;
+  const int32_t ahead = mode & kReverse ? here - destination : destination - here;
+  if (climbs) {
+    if (ahead >= static_cast<int32_t>(0UL + motion.height + motion.length + count)) {
+      mode |= kClimb;
+    } else {
+      count = 1;
+    }
+  }
+  uint32_t steps = 0UL + motion.height + count;  // it takes to come to rest
+  if (ahead >= static_cast<int32_t>(steps)) {
+    steps = ahead;
+  } else {
+    mode |= kTurning;
+  }
+  motion.mode = mode;
+  leave(motion, here, steps, count);
+  return count;
+}
+
+// Has the motor come to rest. Returns the count.
+SHARED uint8_t comeToRest(AxisMotion &axis, uint8_t count) {
+  auto &motion = near(axis);
+  if (!(motion.mode & kRunning)) return count;
+  count = redirect(motion, count, positionOf(motion, count), 0);
+  motion.mode &= ~kTurning;  // where it comes to rest is where it is to be
+  motion.destination = motion.end;
+  return count;
+}
+
+// How high a motor may climb for a speed: to the last level that is not faster.
+static uint16_t heightFor(const Row *ramp, uint8_t rows, uint32_t pace, uint32_t interval) {
+  uint16_t height = 0;
+  for (; rows; --rows) {
+    const uint8_t rungs = pgm_read_byte(&ramp->levels);
+    const uint8_t shifts = pgm_read_byte(&ramp->shifts);
+    const uint32_t slope = slopeOf(ramp++, shifts);
+    const uint32_t top = pace - slope * rungs;
+    if (top < interval) {  // in this row: so many of its levels
+      for (; pace - slope >= interval; pace -= slope) height += stepsOf(shifts);
+      return height;
+    }
+    height += rungs * stepsOf(shifts);
+    pace = top;
+  }
+  return height;
+}
+
+// Has the motor cruise at a speed, for which it climbs so high. Returns the count.
+static uint8_t cruiseAt(AxisMotion &axis, uint8_t count, uint32_t interval, uint16_t goal) {
+  auto &motion = near(axis);
+  motion.goal = goal;
+  motion.cruise = interval;
+  if (!(motion.mode & kRunning)) return count;
+  const uint32_t left = stepsLeft(motion, count);
+  bool climbs;
+  count = cut(motion, count, climbs);
+  if (climbs) {
+    if (goal >= motion.height + motion.length) {
+      motion.mode |= kClimb;
+    } else {
+      count = 1;
+    }
+  }
+  motion.rest = left - count;
+  return count;
+}
 
 // Returns why a call of a speed function must be refused, or 0.
 static int8_t checkSpeed(uint32_t period) {
@@ -199,7 +449,7 @@ static AxisMotion motorMotion;
 constexpr uint32_t kMotorFirstInterval = 20230207UL;
 constexpr uint32_t kMotorCruiseInterval = 4096000UL;
 constexpr uint16_t kMotorCruiseHeight = 478;  // in steps
-static const PackedRow motorRamp[] PROGMEM = {
+static const Row motorRamp[] PROGMEM = {
     {2, 0x10, 1818},  // 2 x 1, 1818 clocks
     {3, 0x10, 1533},  // 3 x 1, 1533 clocks
     {3, 0x10, 1273},  // 3 x 1, 1273 clocks
@@ -242,18 +492,8 @@ INLINE void motorCoilsOff() {
   PORTB &= 0xF0;  // coil A, coil B, coil C, coil D
 }
 
-// Steps that are left of this way. Only while interrupts are off.
-INLINE uint32_t motorLeft() {
-  auto &motion = near(motorMotion);
-  return motion.rest + static_cast<uint16_t>(motion.levels * motion.length) + GPIOR1;
-}
-
-// Where the motor is: the end of its way less what is left. Only while interrupts are off.
-SHARED uint32_t motorPosition() {
-  auto &motion = near(motorMotion);
-  const uint32_t left = motorLeft();
-  return motion.end + (motion.mode & kReverse ? left : -left);
-}
+// Where the motor is. Only while interrupts are off.
+INLINE uint32_t motorPosition() { return positionOf(motorMotion, GPIOR1); }
 
 // Lets current flow in the phase where the motor is. Only while interrupts are off.
 SHARED void motorEnergise() {
@@ -274,43 +514,17 @@ INLINE bool motorPassed() {
   return true;
 }
 
-// Has the channel match one interval after it was last due; a long one begins with 16384 to 32767
-// clocks, and laps follow.
-SHARED void motorAdvance() {
-  auto &motion = near(motorMotion);
-  const uint32_t interval = motion.interval;
-  uint16_t ticks = interval >> 8;
-  uint16_t laps = 0;
-  if (interval >= kLappedInterval) {
-    const uint16_t high = interval >> 16;
-    laps = (high >> 6) - 1;
-    ticks = (ticks & (kLapTicks - 1)) | kLapTicks;
-  }
-  motion.lapsLeft = laps;
-  const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);
-  motion.dueFraction = fraction;
-  const uint16_t due = motion.due + ticks + (fraction >> 8);
-  motion.due = due;
-  OCR1A = due;
-}
-
 // Starts the first interval from rest, which begins now.
 INLINE void motorRunTimer() {
   auto &motion = near(motorMotion);
   motion.dueFraction = 0;
   motion.due = TCNT1;
-  motorAdvance();
+  OCR1A = nextDue(motion);
   TIFR1 = _BV(OCF1A);  // a match of before makes no step
   TIMSK1 |= _BV(OCIE1A);
 }
 
-// Where the step interrupt goes on when the next step is due already.
-extern "C" void __vector_motor_boundary_late() __attribute__((signal, used, externally_visible));
-void __vector_motor_boundary_late() {
-  if (motorPassed()) ++motorMotion.missed;
-}
-
-// Timer 1 compare match A: one step, 86 cycles from the interrupt's response to RETI; at most 1081
+// Timer 1 compare match A: one step, 86 cycles from the interrupt's response to RETI; at most 951
 // when it goes on in __vector_motor_boundary. The wires change 34 cycles after the match (44 before
 // a boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port B and nothing else that the sketch can see. Behind each instruction stand its cycles.
@@ -339,7 +553,7 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   pop   r31                      \n"  // 2
       "   pop   r30                      \n"  // 2
       "   push  r25                      \n"  // 2
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
+      "11: lds   r24, %[fraction]        \n"  // 2  when this step was due, and the interval
       "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
       "   add   r24, r25                 \n"  // 1
       "   sts   %[fraction], r24         \n"  // 2
@@ -359,17 +573,14 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   lds   r24, %[tcntHigh]         \n"  // 2
       "   lds   r25, %[due] + 1          \n"  // 2
       "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
       "   brpl  13f                      \n"  // 1
+      "12: pop   r25                     \n"  // 2
       "   in    r24, %[scratch]          \n"  // 1
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   reti                           \n"  // 4
 
-      "13: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   jmp   __vector_motor_boundary_late\n"  // 3
+      "13: rjmp  18f                     \n"  // 2
 
       "1: lds   r24, %[laps]             \n"  // 2  laps of a long interval that are left?
       "   tst   r24                      \n"  // 1
@@ -413,41 +624,26 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
       "   sts   %[interval] + 2, r24     \n"  // 2
       "   lds   r24, %[length]           \n"  // 2  and lasts for so many steps
       "   out   %[count], r24            \n"  // 1
-      "   lds   r24, %[fraction]         \n"  // 2  when this step was due, and the interval
-      "   lds   r25, %[interval]         \n"  // 2  more: first 1/256 clocks,
-      "   add   r24, r25                 \n"  // 1
-      "   sts   %[fraction], r24         \n"  // 2
-      "   lds   r24, %[due]              \n"  // 2  then clocks
-      "   lds   r25, %[interval] + 1     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due], r24              \n"  // 2
-      "   lds   r24, %[due] + 1          \n"  // 2
-      "   lds   r25, %[interval] + 2     \n"  // 2
-      "   adc   r24, r25                 \n"  // 1
-      "   sts   %[due] + 1, r24          \n"  // 2
-      "   sts   %[ocrHigh], r24          \n"  // 2  waits in TEMP
-      "   lds   r25, %[due]              \n"  // 2
-      "   sts   %[ocrLow], r25           \n"  // 2  the next match is the next step
-      "   lds   r24, %[tcntLow]          \n"  // 2
-      "   sub   r24, r25                 \n"  // 1
-      "   lds   r24, %[tcntHigh]         \n"  // 2
-      "   lds   r25, %[due] + 1          \n"  // 2
-      "   sbc   r24, r25                 \n"  // 1  negative: that is still to come
-      "   pop   r25                      \n"  // 2
-      "   brpl  14f                      \n"  // 1
-      "   in    r24, %[scratch]          \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   reti                           \n"  // 4
-      "14: in    r24, %[scratch]         \n"  // 1
-      "   out   %[sreg], r24             \n"  // 1
-      "   pop   r24                      \n"  // 2
-      "   jmp   __vector_motor_boundary_late\n"  // 3
+      "   rjmp  11b                      \n"  // 2  the rest is as usual
       "16: pop   r25                     \n"  // 2
       "2: in    r24, %[scratch]          \n"  // 1
       "   out   %[sreg], r24             \n"  // 1
       "   pop   r24                      \n"  // 2
       "   jmp   __vector_motor_boundary  \n"  // 3
+      "18: sbic  %[tifr], %[ocf]         \n"  // 1  a match meanwhile is that step
+      "   rjmp  12b                      \n"  // 2
+      "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
+      "   lds   r25, %[tcntHigh]         \n"  // 2
+      "   subi  r24, lo8(-32)            \n"  // 1
+      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   sts   %[ocrHigh], r25          \n"  // 2
+      "   sts   %[ocrLow], r24           \n"  // 2
+      "   lds   r24, %[missed]           \n"  // 2  and it is counted
+      "   lds   r25, %[missed] + 1       \n"  // 2
+      "   adiw  r24, 1                   \n"  // 2
+      "   sts   %[missed], r24           \n"  // 2
+      "   sts   %[missed] + 1, r25       \n"  // 2
+      "   rjmp  12b                      \n"  // 2
       :
       :
         [sreg] "I"(_SFR_IO_ADDR(SREG)),
@@ -458,6 +654,7 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
         [ocrHigh] "n"(_SFR_MEM_ADDR(OCR1AH)),
         [tcntLow] "n"(_SFR_MEM_ADDR(TCNT1L)),
         [tcntHigh] "n"(_SFR_MEM_ADDR(TCNT1H)),
+        [tifr] "I"(_SFR_IO_ADDR(TIFR1)),
         [due] "i"(&motorMotion.due),
         [fraction] "i"(&motorMotion.dueFraction),
         [interval] "i"(&motorMotion.interval),
@@ -465,29 +662,11 @@ ISR(TIMER1_COMPA_vect, ISR_NAKED) {
         [levels] "i"(&motorMotion.levels),
         [change] "i"(&motorMotion.change),
         [length] "i"(&motorMotion.length),
+        [missed] "i"(&motorMotion.missed),
+        [ocf] "n"(OCF1A),
         [ring] "i"(motorRing),
         [port0] "I"(_SFR_IO_ADDR(PORTB))
       : "memory");
-}
-
-// Brings the place on the ramp up to date with the levels that the interrupt has begun, and tells
-// whether it climbs.
-SHARED bool motorSettle() {
-  auto &motion = near(motorMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) return false;
-  const uint8_t begun = motion.planned - motion.levels;
-  const uint16_t steps = begun * motion.length;
-  motion.pace = motion.interval;
-  motion.mode = mode & ~(kClimb | kDescend);
-  if (mode & kClimb) {
-    motion.rung += begun;
-    motion.height += steps;
-    return true;
-  }
-  motion.rung -= begun;
-  motion.height -= steps;
-  return false;
 }
 
 // No step comes any more.
@@ -500,102 +679,16 @@ INLINE void motorRest() {
   GPIOR1 = 0;
 }
 
-// Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
-// It climbs while there is room to come down again, so it never has to know how a way goes on.
-SHARED void motorDecide() {
-  auto &motion = near(motorMotion);
-  if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
-    motion.rest += kFar;  // the end stays far away
-    motion.end += motion.mode & kReverse ? -kFar : kFar;
-  }
-  const uint16_t height = motion.height;
-  const uint16_t goal = motion.goal;
-  uint32_t slack = motion.rest - height;  // steps before it must come down; so many will do:
-  if (slack > 256UL * kFlatSteps) slack = 256UL * kFlatSteps;
-  const uint16_t room = slack;
-  const bool descends = room == 0 || height > goal;
-  uint16_t way = 0;  // steps down or up
-  uint8_t rung = motion.rung;
-  if (descends) {
-    way = room ? height - goal : 0xFFFF;
-    if (rung == 0) --motion.row;
-  } else if (height < goal) {
-    way = goal - height;
-    if (room / 2 < way) way = room / 2;
-    if (rung == motion.rungs) {
-      ++motion.row;
-      rung = 0;
-    }
-  }
-  const Row row = readRow(motorRamp + motion.row);
-  motion.rungs = row.levels;
-  way = levelsIn(way, row);
-  motion.interval = motion.pace;
-  motion.change = 0;
-  uint8_t length = row.steps;
-  uint8_t first = length;  // steps of the first level
-  uint8_t levels;  // and how many follow it
-  if (descends) {
-    if (rung == 0) rung = row.levels;
-    levels = --rung;
-    if (way <= levels) levels = way - 1;
-    motion.height = height - length;
-    motion.change = row.slope;
-    motion.interval += row.slope;
-    motion.mode |= kDescend;
-  } else if (way) {
-    levels = row.levels - rung - 1;
-    if (way <= levels) levels = way - 1;
-    motion.change = -row.slope;
-    motion.mode |= kClimb;
-  } else {
-    if (height == goal) motion.interval = motion.cruise;
-    const uint16_t others = room - 1;
-    length = kFlatSteps;
-    first = others % kFlatSteps + 1;
-    levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
-  }
-  if (motion.interval >= kLappedInterval) {  // then each step is a boundary
-    levels = 0;
-    first = 1;
-  }
-  motion.rung = rung;
-  motion.length = length;
-  motion.levels = motion.planned = levels;
-  GPIOR1 = first;
-  motion.rest -= static_cast<uint16_t>(levels * length) + first;
-}
-
 // Begins a way from rest to the destination; tells whether there is one.
 SHARED bool motorSetOut() {
   auto &motion = near(motorMotion);
-  uint32_t way = motion.destination - motion.end;
-  if (way == 0) return false;
   const uint8_t before = motion.mode;
-  uint8_t mode = (before & kEndless) | kRunning;
-  if (way >> 31) {
-    mode |= kReverse;
-    way = -way;
-  }
-  motion.rest = way;
-  motion.end = motion.destination;
-  motion.mode = mode;
+  if (!setOut(motion, kMotorFirstInterval)) return false;
+  const uint8_t mode = motion.mode;
   if ((before ^ mode) & kReverse) {
     GPIOR0 += mode & kReverse ? 2 : -2;
   }
-  motion.row = 0;
-  motion.rung = 0;
-  motion.rungs = 1;
-  motion.height = 0;
-  motion.pace = kMotorFirstInterval;
-  motorDecide();
   return true;
-}
-
-// Goes on to the destination from where a way has ended, or to the next one; tells whether there is
-// one.
-INLINE bool motorGoOn() {
-  return motorSetOut();
 }
 
 // Where the step interrupt goes on in its rare ways: at the end of a row of levels, where a way
@@ -603,7 +696,8 @@ INLINE bool motorGoOn() {
 extern "C" void __vector_motor_boundary() __attribute__((signal, used, externally_visible));
 void __vector_motor_boundary() {
   auto &motion = near(motorMotion);
-  if (motion.lapsLeft) {  // no step is due
+  const bool lapped = motion.lapsLeft;
+  if (lapped) {  // no step is due
     GPIOR1 = 1;
     --motion.lapsLeft;
     if (motion.lapsLeft == 0 && (motion.mode & kCoast)) {
@@ -613,29 +707,23 @@ void __vector_motor_boundary() {
     }
     motion.due += kLapTicks;
     OCR1A = motion.due;
-    motorPassed();
-    return;
+  } else {
+    if (!endLevel(motion)) {  // the way has ended: on to the destination, or to the next one
+      if (!motorSetOut()) {
+        // The rotor is still on its way: the coils go off one interval after the last step.
+        motion.mode = (motion.mode & kReverse) | kCoast;
+        motion.rest = -1;
+        GPIOR1 = 1;
+        OCR1A = nextDue(motion);
+        ++motion.lapsLeft;
+        motorPassed();
+        return;
+      }
+    }
+    GPIOR1 = decide(motion, motorRamp);
+    OCR1A = nextDue(motion);
   }
-  if (motorSettle()) {  // the level is climbed
-    motion.interval += motion.change;
-    motion.pace = motion.interval;
-    motion.height += motion.length;
-    ++motion.rung;
-  }
-  if (motion.rest) {
-    motorDecide();
-  } else if (!motorGoOn()) {
-    // The rotor is still on its way: the coils go off one interval after the last step.
-    motion.mode = (motion.mode & kReverse) | kCoast;
-    motion.rest = -1;
-    GPIOR1 = 1;
-    motorAdvance();
-    ++motion.lapsLeft;
-    motorPassed();
-    return;
-  }
-  motorAdvance();
-  if (motorPassed() && !motion.lapsLeft) ++motion.missed;
+  if (motorPassed() && !lapped && !motion.lapsLeft) ++motion.missed;
 }
 
 void motorInit() {
@@ -647,7 +735,6 @@ void motorInit() {
   motion.levels = 0;
   motion.end = 0;
   motion.destination = 0;
-  motion.origin = 0;
   motion.goal = kMotorCruiseHeight;
   motion.cruise = kMotorCruiseInterval;
   motion.missed = 0;
@@ -663,94 +750,47 @@ void motorInit() {
   DDRB |= 0x0F;  // coil A, coil B, coil C, coil D
 }
 
-// Lets a call in: no level follows the present one, which ends as it was; at constant speed, with
-// the next step. Tells whether the motor climbs. Only while interrupts are off, as what follows.
-SHARED bool motorCut() {
-  auto &motion = near(motorMotion);
-  const uint8_t mode = motion.mode;
-  if (!(mode & (kClimb | kDescend))) GPIOR1 = 1;
-  const bool climbs = motorSettle();
-  motion.mode |= mode & kDescend;
-  motion.levels = motion.planned = 0;
-  return climbs;
-}
-
-// Goes on from here for so many steps.
-SHARED void motorLeave(uint32_t here, uint32_t steps) {
-  auto &motion = near(motorMotion);
-  motion.end = motion.mode & kReverse ? here - steps : here + steps;
-  motion.rest = steps - GPIOR1;
-}
-
-// Has the motor move from here to a destination: from rest, or in mid-way.
-SHARED void motorAim(uint32_t here, uint32_t destination, uint8_t endless) {
+// Has the motor move to a destination: from rest, or in mid-way. Only while interrupts are off.
+SHARED void motorAim(uint32_t destination, uint8_t endless) {
   auto &motion = near(motorMotion);
   if (motion.mode & kRunning) {
-    motion.destination = destination;
-    const bool climbs = motorCut();
-    uint8_t mode = (motion.mode & ~(kEndless | kTurning)) | endless;
-    const int32_t ahead = mode & kReverse ? here - destination : destination - here;
-    uint32_t steps = motion.height + GPIOR1;  // it takes to come to rest
-    if (climbs) {
-      if (ahead >= static_cast<int32_t>(steps + motion.length)) {
-        mode |= kClimb;
-      } else {
-        GPIOR1 = 1;
-        steps = motion.height + 1UL;
-      }
-    }
-    if (ahead >= static_cast<int32_t>(steps)) {
-      steps = ahead;
-    } else {
-      mode |= kTurning;
-    }
-    motion.mode = mode;
-    motorLeave(here, steps);
-  } else if (destination != here) {
+    GPIOR1 = redirect(motion, GPIOR1, destination, endless);
+  } else if (destination != motion.end) {
     motorStopTimer();
     motorEnergise();
     motion.destination = destination;
-    motion.end = here;
     motion.mode = (motion.mode & kReverse) | endless;
     motorSetOut();
+    GPIOR1 = decide(motion, motorRamp);
     motorRunTimer();
   }
 }
 
 int8_t motorMoveTo(int32_t target) {
   const Masked masked;
-  motorAim(motorPosition(), motorMotion.origin + target, 0);
+  motorAim(target, 0);
   return 0;
 }
 
 int8_t motorMove(int32_t steps) {
   const Masked masked;
-  const uint32_t here = motorPosition();
-  motorAim(here, here + steps, 0);
+  motorAim(motorPosition() + steps, 0);
   return 0;
 }
 
 void motorRunForward() {
   const Masked masked;
-  const uint32_t here = motorPosition();
-  motorAim(here, here + kFar, kEndless);
+  motorAim(motorPosition() + kFar, kEndless);
 }
 
 void motorRunBackward() {
   const Masked masked;
-  const uint32_t here = motorPosition();
-  motorAim(here, here - kFar, kEndless);
+  motorAim(motorPosition() - kFar, kEndless);
 }
 
 void motorStop() {
   const Masked masked;
-  auto &motion = near(motorMotion);
-  if (!(motion.mode & kRunning)) return;
-  const uint32_t here = motorPosition();
-  if (motorCut()) GPIOR1 = 1;
-  motion.mode &= ~(kEndless | kTurning);
-  motorLeave(here, static_cast<uint32_t>(motion.height) + GPIOR1);
-  motion.destination = motion.end;
+  GPIOR1 = comeToRest(motorMotion, GPIOR1);
 }
 
 void motorHalt() {
@@ -761,45 +801,11 @@ void motorHalt() {
   motorRest();
 }
 
-// How high the motor may climb for a speed: to the last level that is not faster.
-static uint16_t motorHeightFor(uint32_t interval) {
-  uint16_t height = 0;
-  uint32_t pace = kMotorFirstInterval;
-  for (const PackedRow *packed = motorRamp; packed < motorRamp + 29; ++packed) {
-    const Row row = readRow(packed);
-    const uint32_t top = pace - row.slope * row.levels;
-    if (top < interval) {  // in this row: bit by bit, how many of its levels
-      uint8_t levels = 0;
-      for (uint8_t more = 128; more; more >>= 1) {
-        const uint8_t tried = levels + more;
-        if (tried < row.levels && pace - row.slope * tried >= interval) levels = tried;
-      }
-      return height + levels * row.steps;
-    }
-    height += row.levels * row.steps;
-    pace = top;
-  }
-  return height;
-}
-
 int8_t motorSetSpeed(uint32_t interval) {
   if (interval < kMotorCruiseInterval) return MOTOR_ERROR_TOO_FAST;
-  const uint16_t goal = motorHeightFor(interval);
+  const uint16_t goal = heightFor(motorRamp, 29, kMotorFirstInterval, interval);
   const Masked masked;
-  auto &motion = near(motorMotion);
-  motion.goal = goal;
-  motion.cruise = interval;
-  if (motion.mode & kRunning) {
-    const uint32_t left = motorLeft();
-    if (motorCut()) {
-      if (goal >= motion.height + motion.length) {
-        motion.mode |= kClimb;
-      } else {
-        GPIOR1 = 1;
-      }
-    }
-    motion.rest = left - GPIOR1;
-  }
+  GPIOR1 = cruiseAt(motorMotion, GPIOR1, interval, goal);
   return 0;
 }
 
@@ -812,12 +818,12 @@ INLINE uint32_t motorTarget() {
 
 int32_t motorCurrentPosition() {
   const Masked masked;
-  return motorPosition() - motorMotion.origin;
+  return motorPosition();
 }
 
 int32_t motorTargetPosition() {
   const Masked masked;
-  return motorTarget() - motorMotion.origin;
+  return motorTarget();
 }
 
 int32_t motorDistanceToGo() {
@@ -834,7 +840,7 @@ int8_t motorSetCurrentPosition(int32_t position) {
   const Masked masked;
   auto &motion = near(motorMotion);
   if (motion.mode & kRunning) return MOTOR_ERROR_RUNNING;
-  motion.origin = motorPosition() - position;
+  motion.end = motion.destination = position;
   return 0;
 }
 

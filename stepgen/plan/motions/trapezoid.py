@@ -17,9 +17,9 @@ from stepgen.spec import Motor
 from stepgen.spec.motions.trapezoid import Trapezoid
 
 _FORMS = {"wide_compare": "ladder-compare"}
-_HANDLER_CYCLES = 790
-_QUEUE_CYCLES = 70
-_MASKED_CYCLES = 990
+_HANDLER_CYCLES = 660
+_QUEUE_CYCLES = 56
+_MASKED_CYCLES = 840
 
 
 def plan(spec: Trapezoid, motor: Motor, f_cpu_hz: int, faults: Faults) -> Motion | None:
