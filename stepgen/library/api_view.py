@@ -140,13 +140,13 @@ def _parts(motor: MotorPlan) -> tuple[str, ...]:
         parts = (*_AXIS_FUNCTIONS, *missed)
         parts += _AXIS_SWITCH_FUNCTIONS if motor.switches_current else ()
         parts += _QUEUE_FUNCTIONS if motor.motion.queue else ()
-        return (*parts, *turns)
+        return (*parts, *turns, *lengths.functions(motor))
     parts = (*_FUNCTIONS, *missed)
     parts += _SWITCH_FUNCTIONS if motor.switches_current else ()
     parts += _CHANGING_FUNCTIONS if motor.motion.kind in _CHANGING else ()
     parts += _TIMED_FUNCTIONS if motor.command_timeout_ms is not None else ()
     parts += turns
-    return (*parts, *(lengths.FUNCTIONS if motor.steps_per_mm is not None else ()))
+    return (*parts, *lengths.functions(motor))
 
 
 def init_name(motor: MotorPlan) -> str:

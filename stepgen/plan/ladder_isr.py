@@ -101,7 +101,7 @@ def _next_level(storage: Storage) -> tuple[Instruction, ...]:
     )
 
 
-def _at_once() -> tuple[Instruction, ...]:
+def at_once() -> tuple[Instruction, ...]:
     """
     Return what has the next step made at once, since its moment has passed without a flag.
     """
@@ -169,7 +169,7 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         replace(leave[0], label="2"),
         *leave[1:],
         Instruction(f"jmp   {handler}", 3),
-        *_at_once(),
+        *at_once(),
     )
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
     until_step = arrival + total_cycles((*entry, *count))

@@ -238,7 +238,7 @@ def _plan_motor(
             "the driver has no ENABLE, so that nothing can switch its coils off; add "
             "`at_rest: hold`, or give `enable` a pin"
         )
-    motion = plan_motion(motor, board.f_cpu_hz, faults)
+    motion = plan_motion(motor, _scale(motor, drive), board.f_cpu_hz, faults)
     if timing and motion:
         timing = _form(timing, motion, faults.at("timing"))
     if not (drive and timing and kernel and motion):
@@ -292,6 +292,18 @@ def _wish(motor: Motor, motion: Motion, board: Board) -> Fraction | None:
     if motion.ladder:
         return Fraction(board.f_cpu_hz * FRACTION, motion.cruise_interval_256)
     return motor.max_steps_per_second
+
+
+def _scale(motor: Motor, drive: Drive | None) -> dict[str, Fraction]:
+    """
+    Return the steps in each unit of speeds that the spec of *motor* allows.
+    """
+    scale = {"steps": Fraction(1)}
+    if motor.steps_per_mm is not None:
+        scale["mm"] = motor.steps_per_mm
+    if drive and (per_turn := _steps_per_turn(motor, drive)):
+        scale |= {"turns": per_turn, "deg": per_turn / 360}
+    return scale
 
 
 def _steps_per_turn(motor: Motor, drive: Drive) -> Fraction | None:

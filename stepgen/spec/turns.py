@@ -18,7 +18,13 @@ _RATIO = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12}|/[0-9]{1,12})?")
 _NO_NUMBER = "is no number; write 64, 63.68395 or a fraction such as 25792/405"
 
 
-def _fraction(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
+def as_ratio(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
+    """
+    Return *value* exactly as it was written.
+
+    Raises:
+        ValueError: It is no number above 0, or none of a size that can be computed with.
+    """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(_NO_NUMBER)  # noqa: TRY004 - for pydantic
     if isinstance(value, str) and not _RATIO.fullmatch(value):
@@ -33,7 +39,7 @@ def _fraction(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
     return number
 
 
-Ratio = Annotated[Fraction, short_form(_fraction, int | float | str)]
+Ratio = Annotated[Fraction, short_form(as_ratio, int | float | str)]
 """A positive ratio, kept exactly as it was written."""
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from stepgen.plan.model import Plan
+from stepgen.plan.model import MotorPlan, Plan
 from stepgen.reference.ramp import WORST_ERROR, Wish, errors
 from stepgen.spec import LoadedSpec
 from stepgen.verify.ladders import ladder_of
@@ -26,12 +26,11 @@ def judge_ramps(loaded: LoadedSpec, plan: Plan, report: SpecReport) -> None:
         if ladder is None:
             continue
         asked: Any = loaded.spec.motors[planned.name].motion
-        wish = Wish(
-            plan.board.f_cpu_hz,
-            Fraction(asked.start_speed or 0),
-            Fraction(asked.cruise_speed),
-            Fraction(asked.acceleration),
+        start, cruise, acceleration = (
+            wanted.number * _steps_in(wanted.unit, planned) if wanted else Fraction(0)
+            for wanted in (asked.start_speed, asked.cruise_speed, asked.acceleration)
         )
+        wish = Wish(plan.board.f_cpu_hz, start, cruise, acceleration)
         found = errors(ladder, planned.motion.cruise_interval_256, wish)
         findings = tuple(_findings(found.speed, found.time))
         report.check(
@@ -40,6 +39,16 @@ def judge_ramps(loaded: LoadedSpec, plan: Plan, report: SpecReport) -> None:
             f"{found.steps} steps, each within {float(found.speed):.4%} of its speed; the ramp is "
             f"{float(found.late_clocks):+.0f} clocks off, {float(found.time):.4%} of its length",
         )
+
+
+def _steps_in(unit: str, motor: MotorPlan) -> Fraction:
+    """
+    Return how many steps of *motor* one of *unit* is.
+    """
+    if unit == "steps":
+        return Fraction(1)
+    per = motor.steps_per_mm if unit == "mm" else motor.steps_per_turn
+    return Fraction(per or 0) / (360 if unit == "deg" else 1)
 
 
 def _findings(speed: Fraction, time: Fraction) -> Iterator[str]:

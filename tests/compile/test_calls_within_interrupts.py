@@ -32,6 +32,7 @@ ARGUMENTS = {
     "SetCurrentPosition": "b",
     "TimerCalcPerSecond": "a",
     "TimerCalcNanometresPerSecond": "b",
+    "IntervalForNanometresPerSecond": "b",
     "CallBackPositionReached": "nullptr",
     "CallBackFault": "nullptr",
 }

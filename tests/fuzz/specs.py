@@ -158,7 +158,12 @@ def axis(draw: st.DrawFn, free: list[str]) -> Data:
         "start_speed": st.integers(1, cruise - 1),
         "queue": st.integers(1, 16),
     }
+    units: Data = {}
+    if per_mm := draw(st.sampled_from([None, 1, 80, 400])):
+        units["steps_per_mm"] = per_mm
+        motion["cruise_speed"] = f"{cruise}/{per_mm} mm/s"
     return {
+        **units,
         "drive": drive,
         "timing": {"kind": "compare", "timer": 1},
         "motion": motion | draw(st.fixed_dictionaries({}, optional=options)),

@@ -122,3 +122,87 @@ def test_no_product_overflows(tmp_path: Path, steps: str) -> None:
 
     assert factors
     assert all(factor << 31 < 1 << 63 for factor in factors)
+
+
+AXIS = """
+library: Mine
+board: uno
+motors:
+  z:
+    drive: {{kind: step-dir, driver: a4988, step: D2, dir: D5, enable: D8}}
+    timing: {{kind: compare, timer: 1}}
+    motion: {{kind: trapezoid, cruise_speed: {cruise}, acceleration: {acceleration}}}
+    steps_per_mm: {steps}
+    steps_per_turn: 200
+"""
+
+
+def _axis(folder: Path, steps: str, cruise: str = "10 mm/s", more: str = "100 mm/s^2") -> Path:
+    path = folder / "spec.yaml"
+    path.write_text(AXIS.format(cruise=cruise, acceleration=more, steps=steps), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("steps", ["400", "80", "3200/7", "157.48", "1000"])
+def test_ways_of_an_axis_go_both_ways(tmp_path: Path, steps: str) -> None:
+    """
+    A way is rounded to the nearest step, forward and backward alike.
+    """
+    header = api.render(_axis(tmp_path, steps))["src/Mine.h"]
+    body = _body(header, "int32_t zStepsForMicrometres").replace("L", "")
+    per_um = Fraction(steps) / 1000
+    found = re.fullmatch(r"micrometres \* (\d+)", body) or re.fullmatch(
+        r"static_cast<int32_t>\(\(micrometres \* (\d+) \+ \(micrometres < 0 \? -(\d+) : \2\)\) / "
+        r"(\d+)\)",
+        body,
+    )
+    assert found, body
+    number, half, divisor = (int(part) for part in (*found.groups("1"), "0", "1")[:3])
+
+    for way in (1, 7, 999, 123_456):
+        made = (way * number + (half if divisor > 1 else 0)) // divisor  # C cuts off towards 0
+        assert abs(made - way * per_um) <= Fraction(1, 2)
+
+
+@pytest.mark.parametrize("steps", ["400", "80", "3200/7", "157.48", "1000"])
+def test_the_interval_of_an_axis_is_the_exact_ratio_cut_off(tmp_path: Path, steps: str) -> None:
+    """
+    In 1/256 clocks, so that the speed of the spec itself is not refused as too fast.
+    """
+    source = api.render(_axis(tmp_path, steps))["src/Mine.cpp"]
+    body = source[source.index("zIntervalForNanometresPerSecond(") :]
+    body = body[: body.index("}")]
+    found = re.search(r"interval = (\d+)ULL / (?:speed|\((\d+)ULL \* speed\));", body)
+    cruise = re.search(r"kZCruiseInterval = (\d+)UL;", source)
+    assert found
+    assert cruise
+
+    for speed in (1, 46, 12_345, 3_000_000, 10_000_000):
+        made = int(found[1]) // (int(found[2] or 1) * speed)
+        assert made == 256 * 16_000_000 * 1_000_000 / Fraction(steps) / speed // 1
+    assert made == int(cruise[1])
+    assert int(found[1]) < 1 << 64
+    assert "interval < UINT32_MAX ? interval : UINT32_MAX" in body
+
+
+@pytest.mark.parametrize(
+    ("cruise", "more", "sps", "acceleration"),
+    [
+        ("4000", "8000", 4000, 8000),
+        ("10 mm/s", "100 mm/s^2", 4000, 40_000),
+        ("360 deg/s", "2 turns/s^2", 200, 400),
+        ("1.5 turns/s", "90 deg/s^2", 300, 50),
+        ("2000/127 mm/s", "8000 steps/s^2", Fraction(800_000, 127), 8000),
+    ],
+)
+def test_a_spec_may_name_speeds_in_the_units_of_the_axis(
+    tmp_path: Path, cruise: str, more: str, sps: Fraction, acceleration: Fraction
+) -> None:
+    """
+    400 steps are a millimetre, 200 a turn; every unit is kept exactly.
+    """
+    (motor,) = api.plan(_axis(tmp_path, "400", cruise, more)).motors
+
+    assert motor.motion.cruise_interval_256 == 16_000_000 * 256 // sps
+    assert motor.motion.ladder
+    assert motor.motion.ladder.acceleration == acceleration

@@ -2,6 +2,8 @@
 What the planner knows of each motion: one module per kind, named like it.
 """
 
+from collections.abc import Mapping
+from fractions import Fraction
 from importlib import import_module
 
 from stepgen.plan.faults import Faults
@@ -9,12 +11,15 @@ from stepgen.plan.isr import Motion
 from stepgen.spec import Motor
 
 
-def plan_motion(motor: Motor, f_cpu_hz: int, faults: Faults) -> Motion | None:
+def plan_motion(
+    motor: Motor, scale: Mapping[str, Fraction], f_cpu_hz: int, faults: Faults
+) -> Motion | None:
     """
     Return what the motion of *motor* asks of the step interrupt.
 
-    Returns None after reporting why it cannot be; *faults* are those of the motor.
+    Returns None after reporting why it cannot be; *faults* are those of the motor, *scale* the
+    steps in each unit that its spec allows.
     """
     module = import_module(f"{__name__}.{motor.motion.kind.replace('-', '_')}")
-    motion: Motion | None = module.plan(motor.motion, motor, f_cpu_hz, faults)
+    motion: Motion | None = module.plan(motor.motion, motor, scale, f_cpu_hz, faults)
     return motion

@@ -2,6 +2,8 @@
 Trapezoid: ramps from a table, a decision at the end of each row, and no look at the clock.
 """
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from stepgen.plan.faults import Faults
@@ -15,20 +17,25 @@ from stepgen.plan.ladder import (
 )
 from stepgen.spec import Motor
 from stepgen.spec.motions.trapezoid import Trapezoid
+from stepgen.spec.quantities import Quantity
 
 _FORMS = {"wide_compare": "ladder-compare"}
 _HANDLER_CYCLES = 660
 _QUEUE_CYCLES = 56
 _MASKED_CYCLES = 840
+_MOST_SPS = 1_000_000
 
 
-def plan(spec: Trapezoid, motor: Motor, f_cpu_hz: int, faults: Faults) -> Motion | None:
+def plan(
+    spec: Trapezoid, motor: Motor, scale: Mapping[str, Fraction], f_cpu_hz: int, faults: Faults
+) -> Motion | None:
     """
     Return what the motion asks of the step interrupt.
     """
     _report_others(motor, faults)
-    ladder = _ladder(spec, f_cpu_hz, faults.at("motion"))
-    if ladder is None:
+    speeds = _speeds(spec, scale, faults.at("motion"))
+    ladder = speeds and _ladder(speeds, f_cpu_hz, faults.at("motion"))
+    if not (speeds and ladder):
         return None
     return Motion(
         kind=spec.kind,
@@ -42,7 +49,7 @@ def plan(spec: Trapezoid, motor: Motor, f_cpu_hz: int, faults: Faults) -> Motion
         ladder=ladder,
         queue=spec.queue,
         wish_field=("motion", "cruise_speed"),
-        cruise_interval_256=int(f_cpu_hz * FRACTION / spec.cruise_speed),
+        cruise_interval_256=int(f_cpu_hz * FRACTION / speeds.cruise_sps),
     )
 
 
@@ -52,31 +59,75 @@ def _report_others(motor: Motor, faults: Faults) -> None:
     """
     for field, way_out in (
         ("command_timeout_ms", "take `motion: constant`, or remove it"),
-        ("steps_per_mm", "write speeds and ways in steps, or take `motion: constant`"),
         ("max_steps_per_second", "cruise_speed is the highest rate already; remove it"),
     ):
         if getattr(motor, field) is not None:
             faults.at(field).report(f"is nothing that a motor with motion trapezoid has; {way_out}")
 
 
-def _ladder(spec: Trapezoid, f_cpu_hz: int, faults: Faults) -> Ladder | None:
+@dataclass(frozen=True)
+class _Speeds:
     """
-    Return the ramp of *spec*; None after reporting that it is too long or begins too slowly.
+    The speeds of a spec in steps per second, and its acceleration in steps/s^2.
     """
-    start = spec.start_speed or Fraction(0)
-    ladder = plan_ladder(f_cpu_hz, spec.cruise_speed, spec.acceleration, start)
+
+    start_sps: Fraction
+    cruise_sps: Fraction
+    acceleration: Fraction
+
+
+def _speeds(spec: Trapezoid, scale: Mapping[str, Fraction], faults: Faults) -> _Speeds | None:
+    """
+    Return the speeds of *spec* in steps; None after reporting a unit that *scale* has not.
+    """
+
+    def in_steps(field: str, quantity: Quantity) -> Fraction | None:
+        if quantity.unit in scale:
+            return quantity.number * scale[quantity.unit]
+        needed = "steps_per_mm" if quantity.unit == "mm" else "steps_per_turn"
+        faults.at(field).report(
+            f"how many steps that is, nothing says; add `{needed}` to the motor, or write steps"
+        )
+        return None
+
+    start = in_steps("start_speed", spec.start_speed or Quantity(Fraction(0)))
+    cruise = in_steps("cruise_speed", spec.cruise_speed)
+    acceleration = in_steps("acceleration", spec.acceleration)
+    if start is None or cruise is None or acceleration is None:
+        return None
+    if cruise > _MOST_SPS:
+        faults.at("cruise_speed").report(
+            f"{float(cruise):g} steps/s is out of range; {_MOST_SPS} are the most"
+        )
+        return None
+    if start >= cruise:
+        faults.at("start_speed").report(
+            f"is not below cruise_speed, {spec.cruise_speed}/s; make it lower, or leave it out to "
+            "begin from 0"
+        )
+        return None
+    return _Speeds(start, cruise, acceleration)
+
+
+def _ladder(speeds: _Speeds, f_cpu_hz: int, faults: Faults) -> Ladder | None:
+    """
+    Return the ramp of *speeds*; None after reporting that it is too long or begins too slowly.
+    """
+    start = speeds.start_sps
+    ladder = plan_ladder(f_cpu_hz, speeds.cruise_sps, speeds.acceleration, start)
     if ladder is None:
-        squares = (spec.cruise_speed**2 - start**2) / 2
+        squares = (speeds.cruise_sps**2 - start**2) / 2
         faults.at("acceleration").report(
-            f"makes a ramp of {int(squares / spec.acceleration)} steps, and a table can have "
-            f"{MOST_STEPS}; take {float(squares / MOST_STEPS):.6g} or more, or a lower cruise_speed"
+            f"makes a ramp of {int(squares / speeds.acceleration)} steps, and a table can have "
+            f"{MOST_STEPS}; take {float(squares / MOST_STEPS):.6g} steps/s^2 or more, or a "
+            "lower cruise_speed"
         )
         return None
     if ladder.first_interval_256 > LONGEST_INTERVAL_CYCLES * FRACTION:
         seconds = LONGEST_INTERVAL_CYCLES / f_cpu_hz
         faults.at("acceleration").report(
             f"makes the first step last longer than {seconds:.3g} s, the longest interval; take "
-            f"more, or a start_speed of {1 / seconds:.3g} or more"
+            f"more, or a start_speed of {1 / seconds:.3g} steps/s or more"
         )
         return None
     return ladder

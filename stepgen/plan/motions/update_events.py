@@ -2,6 +2,9 @@
 Update events: each step compares the clock with the next moment at which something is due.
 """
 
+from collections.abc import Mapping
+from fractions import Fraction
+
 from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Motion
 from stepgen.spec import Motor
@@ -13,7 +16,13 @@ _TIMED_LOOK_CYCLES = 19
 _TIMED_CALL_CYCLES = 30
 
 
-def plan(spec: UpdateEvents, motor: Motor, _f_cpu_hz: int, _faults: Faults) -> Motion:
+def plan(
+    spec: UpdateEvents,
+    motor: Motor,
+    _scale: Mapping[str, Fraction],
+    _f_cpu_hz: int,
+    _faults: Faults,
+) -> Motion:
     """
     Return what the motion asks of the step interrupt.
     """

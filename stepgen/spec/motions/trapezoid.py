@@ -4,12 +4,12 @@ Trapezoid: each move speeds up, cruises and slows down, with the functions of an
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from stepgen.spec.base import KindModel
-from stepgen.spec.turns import Ratio
+from stepgen.spec.quantities import Acceleration, Speed
 
 MOST_QUEUED = 16
 
@@ -23,23 +23,14 @@ class Trapezoid(KindModel):
         {"cruise_speed": 1000, "acceleration": 2000}
     )
     kind: Literal["trapezoid"] = "trapezoid"
-    cruise_speed: Ratio
-    """The highest speed in steps per second, and the one that holds until the sketch sets one."""
-    acceleration: Ratio
-    """How fast it speeds up and slows down, in steps per second each second."""
-    start_speed: Ratio | None = None
-    """The speed in steps per second that it may take at once; without it a move begins from 0."""
+    cruise_speed: Speed
+    """The highest speed, in steps/s or such as ``50 mm/s``; it holds until the sketch sets one."""
+    acceleration: Acceleration
+    """How fast it speeds up and slows down, in steps/s^2 or such as ``500 mm/s^2``."""
+    start_speed: Speed | None = None
+    """The speed that it may take at once; without it a move begins from 0."""
     queue: Annotated[int, Field(ge=0, le=MOST_QUEUED)] = 0
     """How many moves can wait behind the present one; with 0 there is no function for it."""
-
-    @model_validator(mode="after")
-    def _speeds_up(self) -> Self:
-        if self.start_speed is not None and self.start_speed >= self.cruise_speed:
-            raise ValueError(
-                f"start_speed {float(self.start_speed):g} is not below cruise_speed "
-                f"{float(self.cruise_speed):g}; make it lower, or leave it out to begin from 0"
-            )
-        return self
 
 
 SPEC = Trapezoid

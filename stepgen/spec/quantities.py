@@ -1,0 +1,59 @@
+"""
+Speeds and accelerations in the units of what the motor moves: steps, millimetres, degrees, turns.
+"""
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated, Any, Literal
+
+from stepgen.spec.base import short_form
+from stepgen.spec.turns import as_ratio
+
+Unit = Literal["steps", "mm", "deg", "turns"]
+
+_WORDS = re.compile(r"(?P<number>\S+) *(?P<unit>steps|mm|deg|turns)(?P<per>/s(\^2)?)")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """
+    A number of a unit per second, or per second squared: exactly as it was written.
+    """
+
+    number: Fraction
+    unit: Unit = "steps"
+
+    def __str__(self) -> str:
+        """
+        Return the number with its unit, without the seconds.
+        """
+        return f"{float(self.number):g} {self.unit}"
+
+
+def _quantity(value: Any, per: str) -> Quantity:  # noqa: ANN401 - whatever the YAML held
+    if isinstance(value, str) and " " in value.strip():
+        words = _WORDS.fullmatch(value.strip())
+        if words is None or words["per"] != per:
+            raise ValueError(
+                f"is no quantity; write steps{per} as a number, or such as 50 mm{per}, 90 deg{per} "
+                f"or 1.5 turns{per}"
+            )
+        unit: Any = words["unit"]
+        return Quantity(as_ratio(words["number"]), unit)
+    return Quantity(as_ratio(value))
+
+
+def _speed(value: Any) -> Quantity:  # noqa: ANN401 - whatever the YAML held
+    return _quantity(value, "/s")
+
+
+def _acceleration(value: Any) -> Quantity:  # noqa: ANN401 - whatever the YAML held
+    return _quantity(value, "/s^2")
+
+
+Speed = Annotated[Quantity, short_form(_speed, int | float | str)]
+"""A positive speed: a number of steps per second, or such as ``50 mm/s``."""
+
+Acceleration = Annotated[Quantity, short_form(_acceleration, int | float | str)]
+"""A positive acceleration: a number of steps/s^2, or such as ``500 mm/s^2``."""
