@@ -28,7 +28,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed.
-constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;    // above the cruise speed of the spec
+constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;    // above the spec's speed
 constexpr int8_t MOTOR_ERROR_RUNNING = -5;     // not while the motor runs
 constexpr int8_t MOTOR_ERROR_QUEUE_FULL = -6;  // no place is left for the move
 
