@@ -3,14 +3,15 @@ Speed against time: what a motor's motion does, drawn from the planner's own num
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import floor, log10
 
 from stepgen.datasheet.scene import Scene, at
 from stepgen.errors import StepgenError
-from stepgen.library.examples_view import example_speed_sps
+from stepgen.library.example_speeds import example_speed_sps
 from stepgen.library.text import listed
+from stepgen.plan.ladder import FRACTION, Ladder
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.rates import Clock
 from stepgen.plan.speed_wishes import Wish, plan_wish
@@ -22,6 +23,7 @@ _STEPS_OF_AN_EXAMPLE = 200
 _START_FRACTION = 20
 _RAMP_PERIODS = 40
 _LEAST_RAMP_MS = 1000
+_LOOKS = 6  # of curves in style.css.j2
 
 Corner = tuple[float, float]
 
@@ -29,12 +31,16 @@ Corner = tuple[float, float]
 @dataclass(frozen=True)
 class Curve:
     """
-    A speed over time as a staircase of (s, steps/s), and the call that makes it.
+    A speed over time, from corner to corner of (s, steps/s), and the call that makes it.
+
+    It is a staircase, each speed held until the next corner, unless it is *sloped*.
     """
 
     name: str
     corners: tuple[Corner, ...]
     call: str
+    sloped: bool = False
+    css: str = "c1"
 
 
 @dataclass(frozen=True)
@@ -56,35 +62,79 @@ class Chart:
 
 def motion_charts(plan: Plan) -> Iterator[Chart]:
     """
-    Yield speed against time, one chart for the motors that do the same; its calls are the first's.
+    Yield speed against time, one chart for each motion; motors that do the same share a curve.
 
-    Charts with fewer calls come first: the columns of a printed page are shorter so.
+    The call of a curve is that of its first motor.
     """
-    alike: dict[tuple[tuple[Corner, ...], ...], list[MotorPlan]] = {}
+    kinds: dict[str, list[MotorPlan]] = {}
     for motor in plan.motors:
-        corners = tuple(curve.corners for curve in _motion(motor, plan)[0])
-        alike.setdefault(corners, []).append(motor)
-    for motors in sorted(alike.values(), key=lambda motors: len(_motion(motors[0], plan)[0])):
-        curves, note = _motion(motors[0], plan)
-        names = listed([motor.name for motor in motors])
-        scene = _draw(f"Speed of {names} against time", curves)
-        yield Chart(motors[0].name, f"{names}: speed", scene, curves, note)
+        kinds.setdefault(_note(motor, plan), []).append(motor)
+    for note, motors in kinds.items():
+        alike: dict[tuple[str, tuple[Corner, ...]], tuple[Curve, list[str]]] = {}
+        for motor in motors:
+            for curve in _curves(motor, plan):
+                key = (curve.name, curve.corners)
+                alike.setdefault(key, (curve, []))[1].append(motor.name)
+        names = [motor.name for motor in motors]
+        curves = [
+            replace(
+                curve,
+                name=curve.name if having == names else f"{listed(having)}, {curve.name}",
+                css=f"c{number % _LOOKS + 1}",
+            )
+            for number, (curve, having) in enumerate(alike.values())
+        ]
+        scene = _draw(f"Speed of {listed(names)} against time", curves)
+        yield Chart(names[0], f"{listed(names)}: speed", scene, tuple(curves), note)
 
 
-def _motion(motor: MotorPlan, plan: Plan) -> tuple[tuple[Curve, ...], str]:
+def _curves(motor: MotorPlan, plan: Plan) -> tuple[Curve, ...]:
     """
-    Return the ramps of *motor*, or one turn to and fro where it has none; and a note on them.
+    Return what *motor* can do: a move with ramps, update events, or one turn to and fro.
     """
+    if motor.motion.ladder:
+        return (_move(motor, motor.motion.ladder, plan.board.f_cpu_hz),)
     ramps = _ramps(motor, plan) if motor.motion.changes_speed else ()
-    if ramps:
-        return ramps, (
+    return ramps or (_there_and_back(motor, example_speed_sps(plan)),)
+
+
+def _note(motor: MotorPlan, plan: Plan) -> str:
+    """
+    Return what is to be known of the curves of *motor*.
+    """
+    if motor.motion.ladder:
+        return "A third of the way up, a third at the cruise speed of the spec, a third down."
+    if motor.motion.changes_speed and _ramps(motor, plan):
+        return (
             "From slow to the highest rate by update events: equal changes of the interval, or "
             "halved ones. stepgen plan works out others."
         )
-    return (_there_and_back(motor, example_speed_sps(plan)),), (
+    return (
         "No ramp: the first step comes one interval after the call, at full rate, and the last "
         "one ends the move; take rates at which motor and load can start and stop."
     )
+
+
+def _move(motor: MotorPlan, ladder: Ladder, f_cpu_hz: int) -> Curve:
+    """
+    Return a move of three times the ramp: the ends of the rows of its table, and back down.
+    """
+    cruise = motor.motion.cruise_interval_256
+    clocks_256, interval, up = 0, ladder.first_interval_256, []
+    for row in ladder.rows:
+        for _ in range(row.levels):
+            if interval - row.slope_256 < cruise:
+                break
+            interval -= row.slope_256
+            clocks_256 += interval * row.steps
+        up.append((clocks_256 / FRACTION / f_cpu_hz, f_cpu_hz * FRACTION / interval))
+    first = (0.0, f_cpu_hz * FRACTION / ladder.first_interval_256)
+    steps = ladder.goal(cruise)
+    ramp_s, cruise_sps = up[-1][0], f_cpu_hz * FRACTION / cruise
+    end_s = 2 * ramp_s + steps / cruise_sps
+    down = [(end_s - seconds, speed) for seconds, speed in reversed((first, *up))]
+    corners = (first, *up, (ramp_s, cruise_sps), (end_s - ramp_s, cruise_sps), *down, (end_s, 0))
+    return Curve(f"{3 * steps} steps", corners, f"{motor.name}Move({3 * steps});", sloped=True)
 
 
 def _ramps(motor: MotorPlan, plan: Plan) -> tuple[Curve, ...]:
@@ -145,11 +195,9 @@ def _draw(title: str, curves: Sequence[Curve]) -> Scene:
     for speed in _both_ways(top, bottom):
         scene.stroke(f"M{_LEFT} {at(y_of(speed))}H{right}", "zero" if speed == 0 else "grid")
         scene.write(_LEFT - 5, y_of(speed) + 3, f"{speed:.6g}", "axis-text end")
-    for number, curve in enumerate(curves, start=1):
-        scene.stroke(_staircase(curve.corners, x_of, y_of), f"curve c{number}", curve.name)
-        x = _LEFT + 12 + (number - 1) * 130
-        scene.stroke(f"M{x} {_TOP - 9}h20", f"curve c{number}")
-        scene.write(x + 25, _TOP - 6, curve.name, "axis-text")
+    for curve in curves:
+        path = _line if curve.sloped else _staircase
+        scene.stroke(path(curve.corners, x_of, y_of), f"curve {curve.css}", curve.name)
     scene.write(_LEFT - 5, _TOP - 6, "steps/s", "axis-text end")
     scene.write((_LEFT + right) / 2, _HEIGHT - 4, "time since the call, s", "axis-text middle")
     return scene
@@ -164,6 +212,16 @@ def _staircase(
     (x, y), *more = corners
     start = f"M{at(x_of(0))} {at(y_of(0))}V{at(y_of(y))}" if x == 0 else ""
     return start + "".join(f"H{at(x_of(x))}V{at(y_of(y))}" for x, y in more)
+
+
+def _line(
+    corners: Sequence[Corner], x_of: Callable[[float], float], y_of: Callable[[float], float]
+) -> str:
+    """
+    Return the path that goes straight from corner to corner, up from rest.
+    """
+    points = "L".join(f"{at(x_of(x))} {at(y_of(y))}" for x, y in corners)
+    return f"M{at(x_of(0))} {at(y_of(0))}L{points}"
 
 
 def _both_ways(top: float, bottom: float) -> list[float]:

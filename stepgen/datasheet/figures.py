@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING
 
 from stepgen.library.rates_view import microseconds
 from stepgen.library.text import listed
+from stepgen.plan.ladder import FRACTION, LONGEST_INTERVAL_CYCLES
 from stepgen.plan.model import MotorPlan, Plan, RateLimit
 from stepgen.plan.rates import Clock
 from stepgen.plan.timings import plan_setting
-from stepgen.units import deviation_ppm
+from stepgen.units import deviation_ppm, turns_per_minute
 
 if TYPE_CHECKING:
     from stepgen.datasheet.report import MotorFigures, Report
 
 NOT_VERIFIED = "not verified"
+_TICKS = ("virtual TOP", "prescaler x ticks")
 _TENTHS_OF_US = 10_000_000  # in a second
 _RATES_SPS = (1, 10, 30, 100, 200, 300, 500, 1_000, 2_000, 3_000, 5_000, 10_000, 20_000)
 
@@ -75,32 +77,52 @@ def rate_tables(plan: Plan) -> Iterator[Table]:
     """
     Yield what the timers make of usual rates, one table for the motors that have the same.
 
-    Those whose gears differ have a table for each gear, for its RPM.
+    It has a column for the RPM of each gear.
     """
-    alike: dict[Rates, dict[Fraction | None, list[str]]] = {}
+    alike: dict[Rates, list[MotorPlan]] = {}
+    axes = [motor for motor in plan.motors if motor.motion.ladder]
+    if axes:
+        alike[_axis_rates(axes, plan)] = axes
     for motor in plan.motors:
-        of_gear = alike.setdefault(_rates(motor, plan), {})
-        of_gear.setdefault(motor.steps_per_turn, []).append(motor.name)
-    for rates, of_gear in alike.items():
-        without = of_gear.pop(None, [])
-        if not of_gear:
-            yield _rate_table(rates, without, ())
-        for turn, names in of_gear.items():
-            heading = f"{listed(names)} RPM" if without else "RPM"
-            clock = Clock(plan.board.f_cpu_hz, steps_per_turn=turn or Fraction(1))
-            rpm = tuple(f"{float(clock.rpm(real)):.5g}" for _, real in rates)
-            yield _rate_table(rates, without + names, ((heading, *rpm),))
-            without = []
+        if motor not in axes:
+            alike.setdefault(_rates(motor, plan), []).append(motor)
+    for rates, motors in alike.items():
+        ticks = ("interval, 1/256 clocks",) if motors == axes else _TICKS
+        heading = ("steps/s", *ticks, "on the wire", "ppm off")
+        columns = tuple(_rpm_columns(rates, motors))
+        rows = [heading, *(cells for cells, _ in rates)]
+        first, *others = ((*row, *more) for row, *more in zip(rows, *columns, strict=True))
+        yield Table(f"{listed([m.name for m in motors])}: rates", first, tuple(others))
 
 
-def _rate_table(rates: Rates, names: list[str], columns: Sequence[Row]) -> Table:
+def _rpm_columns(rates: Rates, motors: Sequence[MotorPlan]) -> Iterator[Row]:
     """
-    Return the table of *rates*, with *columns* at the right, their headings first.
+    Yield the RPM of *rates* for each gear, below the names of those that have it, unless all have.
     """
-    heading = ("steps/s", "virtual TOP", "prescaler x ticks", "on the wire", "ppm off")
-    rows = [heading, *(cells for cells, _ in rates)]
-    first, *others = ((*row, *more) for row, *more in zip(rows, *columns, strict=True))
-    return Table(f"{listed(names)}: rates", first, tuple(others))
+    of_gear: dict[Fraction, list[str]] = {}
+    for motor in motors:
+        if motor.steps_per_turn:
+            of_gear.setdefault(motor.steps_per_turn, []).append(motor.name)
+    for turn, names in of_gear.items():
+        heading = "RPM" if len(names) == len(motors) else f"{listed(names)} RPM"
+        yield (heading, *(f"{float(turns_per_minute(real, turn)):.5g}" for _, real in rates))
+
+
+def _axis_rates(axes: Sequence[MotorPlan], plan: Plan) -> Rates:
+    """
+    Return the intervals of usual rates, and of the cruise speeds of *axes*, which are the highest.
+    """
+    f_cpu_256 = plan.board.f_cpu_hz * FRACTION
+    cruises = sorted({motor.motion.cruise_interval_256 for motor in axes}, reverse=True)
+    usual = [(f_cpu_256 // sps, Fraction(sps)) for sps in _RATES_SPS]
+    longest = LONGEST_INTERVAL_CYCLES * FRACTION
+    wanted = [row for row in usual if cruises[-1] < row[0] <= longest]
+    wanted += [(cruise, Fraction(f_cpu_256, cruise)) for cruise in cruises]
+    rates = []
+    for interval, rate in sorted(set(wanted), reverse=True):
+        real = Fraction(f_cpu_256, interval)
+        rates.append(((f"{float(rate):.7g}", str(interval), *_wire(real, rate)), real))
+    return tuple(rates)
 
 
 def _rates(motor: MotorPlan, plan: Plan) -> Rates:
@@ -115,15 +137,17 @@ def _rates(motor: MotorPlan, plan: Plan) -> Rates:
     for period, rate in (*allowed, (fastest, Fraction(f_cpu, fastest))):
         setting = plan_setting(motor.timing, period)
         real = Clock(f_cpu).rate_sps(setting.period_cycles)
-        cells = (
-            f"{float(rate):.7g}",
-            str(period),
-            f"{setting.prescaler} x {setting.top + 1}",
-            f"{float(real):.8g}",
-            f"{round(deviation_ppm(real, rate)):+d}" if real != rate else "0",
-        )
-        rates.append((cells, real))
+        ticks = f"{setting.prescaler} x {setting.top + 1}"
+        rates.append(((f"{float(rate):.7g}", str(period), ticks, *_wire(real, rate)), real))
     return tuple(rates)
+
+
+def _wire(real: Fraction, wanted: Fraction) -> Row:
+    """
+    Return the rate on the wire, and its deviation in ppm.
+    """
+    deviation = f"{round(deviation_ppm(real, wanted)):+d}" if real != wanted else "0"
+    return (f"{float(real):.8g}", deviation)
 
 
 def safe_table(plan: Plan) -> Table:

@@ -2,6 +2,7 @@
 The page: everything that its template prints, and the page as text.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from stepgen.library.render import environment, spec_hash
 from stepgen.library.text import frequency, listed, tidy
 from stepgen.library.view import make_view
 from stepgen.plan.model import Plan
-from stepgen.plan.warnings import plan_warnings
+from stepgen.plan.warnings import PlanWarning, plan_warnings
 
 if TYPE_CHECKING:
     from stepgen.datasheet.report import Check, Report
@@ -108,13 +109,23 @@ def page_view(plan: Plan, spec_text: str, report: "Report | None") -> PageView:
 
 
 def _beside(plan: Plan) -> tuple[str, ...]:
-    under: dict[str, list[str]] = {}
+    under: dict[str, list[PlanWarning]] = {}
     for warning in plan_warnings(plan):
-        under.setdefault(warning.reason, []).append(warning.motor)
-    warnings = (
-        f"{listed(motors)}: {reason}" if all(motors) else reason for reason, motors in under.items()
-    )
-    return tuple(map(_plain, (*takes(plan), *warnings)))
+        under.setdefault(warning.cause, []).append(warning)
+    return tuple(map(_plain, (*takes(plan), *(_of_all(alike) for alike in under.values()))))
+
+
+def _of_all(alike: Sequence[PlanWarning]) -> str:
+    """
+    Return warnings of one cause as one, with the limit of each motor.
+    """
+    first = alike[0]
+    if not first.motor:
+        return first.reason
+    if not alike[1:] or not first.limit:
+        return f"{listed([warning.motor for warning in alike])}: {first.reason}"
+    limits = "; ".join(f"{warning.motor}: {warning.limit}" for warning in alike)
+    return f"{first.cause}: {limits}"
 
 
 def _plain(markdown: str) -> str:

@@ -5,7 +5,7 @@ What no motor of the library can do has no name in it.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from stepgen.library import lengths
 from stepgen.plan.model import MotorPlan, Plan
@@ -62,7 +62,7 @@ _CALL_CYCLES = {"motor": 1000, "axis": 1300}
 
 _CODES = (
     _Name("MOTOR_ERROR_TOO_FAST", -1, "below MOTOR_MIN_TOP"),
-    _Name("MOTOR_ERROR_TOO_FAST", -1, "above the cruise speed of the spec", _AXES),
+    _Name("MOTOR_ERROR_TOO_FAST", -1, "above the spec's speed", _AXES),
     _Name("MOTOR_ERROR_TOO_SLOW", -2, "above MOTOR_MAX_TOP"),
     _Name(
         "MOTOR_ERROR_CONTROL",
@@ -156,6 +156,13 @@ def init_name(motor: MotorPlan) -> str:
     return f"{motor.name}{_AXIS_FUNCTIONS[0] if motor.motion.ladder else _FUNCTIONS[0]}"
 
 
+def position_name(motor: MotorPlan) -> str:
+    """
+    Return the function that tells where *motor* is.
+    """
+    return f"{motor.name}{'CurrentPosition' if motor.motion.ladder else 'ReadPosition'}"
+
+
 def call_cycles(plan: Plan) -> int:
     """
     Return the longest that an interrupt of the sketch can take that does nothing but one call.
@@ -163,11 +170,18 @@ def call_cycles(plan: Plan) -> int:
     return max(_CALL_CYCLES[name] for name in api_names(plan))
 
 
+def api_name(motor: MotorPlan) -> str:
+    """
+    Return the set of functions that *motor* has, by the name of its partial.
+    """
+    return "axis" if motor.motion.ladder else "motor"
+
+
 def api_names(plan: Plan) -> tuple[str, ...]:
     """
     Return the sets of functions that motors of *plan* have, by the names of their partials.
     """
-    return tuple(sorted({"axis" if motor.motion.ladder else "motor" for motor in plan.motors}))
+    return tuple(sorted({api_name(motor) for motor in plan.motors}))
 
 
 def tells_missed(motor: MotorPlan) -> bool:
@@ -202,8 +216,13 @@ def _used(names: Iterable[_Name], plan: Plan) -> tuple[_Name, ...]:
         unused |= _SWITCH_CODES
     if not any(tells_missed(motor) for motor in plan.motors):
         unused |= _MISSED_BITS
-    used = (name for name in names if name.motions & kinds and name.name not in unused)
-    return tuple({name.name: name for name in used}.values())
+    used: dict[str, _Name] = {}
+    for name in names:
+        if name.motions & kinds and name.name not in unused:
+            other = used.get(name.name)
+            remark = f"{other.remark} or {name.remark}" if other else name.remark
+            used[name.name] = replace(name, remark=remark)
+    return tuple(used.values())
 
 
 def _definitions(kind: str, names: tuple[_Name, ...]) -> tuple[Definition, ...]:

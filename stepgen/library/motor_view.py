@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from stepgen.library.api_view import dump_name, init_name, tells_missed
 from stepgen.library.axis_view import AxisView, axis_view
-from stepgen.library.examples_view import example_speed_sps
+from stepgen.library.example_speeds import example_speed_sps
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
 from stepgen.library.kernel_view import KernelView, kernel_view
 from stepgen.library.lengths import Lengths, lengths

@@ -2,7 +2,7 @@
 Sentences about a plan, for comments and documents: what is wired where, and who owns what.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from stepgen.devices import Board
 from stepgen.library.api_view import call_cycles, dump_name
@@ -58,32 +58,55 @@ def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
 def port_rule(motor: MotorPlan, board: Board) -> str:
     """
     Return what the sketch may do to the ports of *motor*.
-
-    A single bit of a port within reach of SBI and CBI changes in one instruction; elsewhere the
-    sketch loads, changes and stores, and a step in between would be undone.
     """
-    every = {wire.pin.bit.port for wire in motor.drive.every_wire}
-    stepping = {wire.pin.bit.port for wire in motor.drive.wires}
-    owned = stepping if motor.owns_ports else set()
     rules = []
+    owned = _owned(motor)
     if owned:
         rules.append(
             f"Port {motor.port_letters} belongs to the motor: the sketch must not write to it."
         )
-    shared = sorted(every - owned)
-    near = [port for port in shared if board.mcu.port(port).port.bit_addressable]
-    far = [port for port in shared if port not in near]
+    shared = {wire.pin.bit.port for wire in motor.drive.every_wire} - owned
+    return " ".join((*rules, *_shared_rules(shared, board)))
+
+
+def _owned(motor: MotorPlan) -> set[str]:
+    """
+    Return the ports that only *motor* writes to.
+    """
+    return {wire.pin.bit.port for wire in motor.drive.wires} if motor.owns_ports else set()
+
+
+def _port_rules(plan: Plan) -> Iterator[str]:
+    """
+    Yield what the sketch may do to the ports of all motors: a port that one owns is not shared.
+    """
+    owners = {port: motor for motor in plan.motors for port in _owned(motor)}
+    every = {wire.pin.bit.port for motor in plan.motors for wire in motor.drive.every_wire}
+    for port, motor in sorted(owners.items(), key=lambda item: item[0]):
+        owner = f"motor {motor.name}" if plan.motors[1:] else "the motor"
+        yield f"Port {port} belongs to {owner}: the sketch must not write to it."
+    yield from _shared_rules(every - owners.keys(), plan.board)
+
+
+def _shared_rules(ports: Iterable[str], board: Board) -> Iterator[str]:
+    """
+    Yield what the sketch may do to *ports*.
+
+    A single bit of a port within reach of SBI and CBI changes in one instruction; elsewhere the
+    sketch loads, changes and stores, and a step in between would be undone.
+    """
+    near = [port for port in sorted(ports) if board.mcu.port(port).port.bit_addressable]
+    far = [port for port in sorted(ports) if port not in near]
     if near:
-        rules.append(
+        yield (
             f"The sketch may change other bits of port{'s' if len(near) > 1 else ''} "
             f"{listed(near)} with digitalWrite(), with single-bit sbi/cbi, or inside ATOMIC_BLOCK."
         )
     if far:
-        rules.append(
+        yield (
             f"The sketch may change other bits of port{'s' if len(far) > 1 else ''} "
             f"{listed(far)} with digitalWrite() or inside ATOMIC_BLOCK."
         )
-    return " ".join(rules)
 
 
 def _pwm(motor: MotorPlan, board: Board) -> str:
@@ -225,14 +248,17 @@ def takes(plan: Plan) -> tuple[str, ...]:
     Return what the library takes from the sketch, a line each.
     """
     under = {rule: [m.name for m in plan.motors if m.timing.rule == rule] for rule in _rules(plan)}
+    of_timer: dict[int, list[MotorPlan]] = {}
+    for motor in plan.motors:
+        of_timer.setdefault(motor.timing.timer.number, []).append(motor)
     rows = [
-        f"Timer {motor.timing.timer.number} and `{motor.timing.vector}`: no `analogWrite()` on "
-        f"{_pwm(motor, plan.board)}.{_own_rule(motor, under)}"
-        for motor in plan.motors
+        f"Timer {number} and {listed([f'`{motor.timing.vector}`' for motor in motors])}: no "
+        f"`analogWrite()` on {_pwm(motors[0], plan.board)}.{_own_rule(motors, under)}"
+        for number, motors in of_timer.items()
     ]
     rows.extend(f"{listed(names)}: {rule}" for rule, names in under.items() if names[1:])
     rows.extend(sharing_rules(plan))
-    rows.extend(port_rule(motor, plan.board) for motor in plan.motors)
+    rows.extend(_port_rules(plan))
     rows.append("`GPIOR0`, `GPIOR1` and `GPIOR2`, which the Arduino core does not use.")
     return tuple(dict.fromkeys(filter(None, rows)))
 
@@ -241,12 +267,12 @@ def _rules(plan: Plan) -> Iterator[str]:
     return (motor.timing.rule for motor in plan.motors if motor.timing.rule)
 
 
-def _own_rule(motor: MotorPlan, under: Mapping[str, list[str]]) -> str:
+def _own_rule(motors: Sequence[MotorPlan], under: Mapping[str, list[str]]) -> str:
     """
-    Return what else holds of the timer of *motor*, unless it holds of other motors, too.
+    Return what else holds of the timer of *motors*, if it holds of one motor only.
     """
-    rule = motor.timing.rule
-    return f" {rule}" if under.get(rule) == [motor.name] else ""
+    rules = [motor.timing.rule for motor in motors if under.get(motor.timing.rule) == [motor.name]]
+    return "".join(f" {rule}" for rule in rules)
 
 
 def paragraph(plan: Plan) -> str:

@@ -97,7 +97,7 @@ def render_library(plan: Plan, spec_text: str, templates: Path | None = None) ->
     context = {"library": view, **_partials(made, view)}
     templates_by_path = {path.format(name=view.name): file for path, file in _FILES.items()}
     for example in view.examples.sketches:
-        templates_by_path[example.path] = f"examples/{example.template}.ino.j2"
+        templates_by_path[example.path] = f"examples/{example.name}.ino.j2"
     rendered = {
         path: tidy(made.get_template(file).render(context))
         for path, file in templates_by_path.items()
@@ -122,5 +122,7 @@ def _partials(made: Environment, view: LibraryView) -> dict[str, object]:
         "motions": modules("motions", {motor.motion_name for motor in view.motors}),
         "timeouts": modules("timeouts", {motor.timeout_name for motor in view.motors}),
         "watchdogs": modules("watchdogs", {view.watchdog_name}),
+        "consoles": modules("consoles", set(view.api_names)),
+        "addressees": modules("addressees", {view.examples.console.addressee}),
         "others": modules("others", {other.partial for other in view.examples.neighbours}),
     }

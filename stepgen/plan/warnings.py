@@ -22,10 +22,20 @@ _ALSO = {"Serial": ", and uploading may be disturbed"}
 class PlanWarning:
     """
     Something of a plan that may surprise, with the name of the motor that it comes from, or "".
+
+    *limit* is the rate up to which it does no harm, where it tells one.
     """
 
     motor: str
-    reason: str
+    cause: str
+    limit: str = ""
+
+    @property
+    def reason(self) -> str:
+        """
+        Return what may surprise.
+        """
+        return f"{self.cause}, {self.limit} beside it" if self.limit else self.cause
 
     def __str__(self) -> str:
         """
@@ -41,17 +51,12 @@ def plan_warnings(plan: Plan) -> tuple[PlanWarning, ...]:
     In the order of the motors; of each motor first its timer, then its pins. Before them comes what
     a boot loader makes of the watchdog.
     """
-    of_motors = tuple(
-        PlanWarning(motor.name, reason)
-        for motor in plan.motors
-        for reason in (
-            *_timer_reasons(motor, plan),
-            *_pwm_reasons(motor, plan),
-            *_pin_reasons(motor, plan),
-            *_unbound_reasons(motor, plan),
-        )
-    )
-    return (*(PlanWarning("", reason) for reason in _watchdog_reasons(plan)), *of_motors)
+    found = [PlanWarning("", reason) for reason in _watchdog_reasons(plan)]
+    for motor in plan.motors:
+        kinds = (_timer_reasons, _pwm_reasons, _pin_reasons)
+        found += [PlanWarning(motor.name, text) for kind in kinds for text in kind(motor, plan)]
+        found += _unbound_warnings(motor, plan)
+    return tuple(found)
 
 
 def _watchdog_reasons(plan: Plan) -> Iterable[str]:
@@ -66,7 +71,7 @@ def _watchdog_reasons(plan: Plan) -> Iterable[str]:
         )
 
 
-def _unbound_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
+def _unbound_warnings(motor: MotorPlan, plan: Plan) -> Iterable[PlanWarning]:
     """
     Yield what of the core and of `uses` can hold up *motor* for longer than anything bounds.
     """
@@ -84,10 +89,8 @@ def _unbound_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
         allowed = "no rate is safe"
         if period is not None:
             allowed = f"up to {f_cpu // period} steps/s are safe"
-        yield (
-            f"nothing bounds {name}, which {unbound.why}: it is not in the highest rate; if it "
-            f"takes {unbound.assumed}, {allowed} beside it"
-        )
+        cause = f"nothing bounds {name}, which {unbound.why}: it is not in the highest rate; if it "
+        yield PlanWarning(motor.name, f"{cause}takes {unbound.assumed}", allowed)
 
 
 def _named(plan: Plan) -> set[str]:

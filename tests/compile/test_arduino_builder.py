@@ -51,6 +51,7 @@ def test_the_example_built_by_the_ide_steps_as_the_model_says(
         ("uno_uln2003_28byj48", "WiringTest"),
         ("uno_variable_speed", "Console"),
         ("mega_stacked_shields_variable", "Console"),
+        ("uno_28byj48_ramp", "Console"),
     ],
 )
 def test_the_ide_builds_the_examples_that_have_functions(

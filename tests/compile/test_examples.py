@@ -21,6 +21,7 @@ STEMS = (
     "uno_servo_beside_variable",
     "uno_drv8825",
     "uno_cnc_shield",
+    "uno_28byj48_ramp",
 )
 BESIDE_ALL = """
 library: BesideAll
@@ -28,6 +29,16 @@ board: mega
 uses: [Servo, SoftwareSerial, SPI, Wire, tone D22, analogWrite D3, Serial, Serial1, Serial3]
 motors:
   motor: {drive: {kind: four-wire, pins: [D4, D5, D6, D7]}, timer: 4}
+"""
+BESIDE_AN_AXIS = """
+library: BesideAnAxis
+board: uno
+uses: [Serial]
+motors:
+  slide:
+    drive: motor-shield
+    timing: {kind: compare, timer: 1}
+    motion: {kind: trapezoid, cruise_speed: 400, acceleration: 400}
 """
 
 
@@ -44,13 +55,16 @@ def test_examples_of_some_specs_compile_without_a_warning(number: int, stem: str
     _compile_all(SPECS / f"{stem}.yaml", COMPILERS[number % len(COMPILERS)])
 
 
+@pytest.mark.parametrize("text", [BESIDE_ALL, BESIDE_AN_AXIS], ids=["all", "axis"])
 @pytest.mark.parametrize("compiler", COMPILERS, ids=lambda compiler: compiler.name)
-def test_a_sketch_with_every_other_library_compiles(compiler: Compiler, tmp_path: Path) -> None:
+def test_a_sketch_with_every_other_library_compiles(
+    compiler: Compiler, text: str, tmp_path: Path
+) -> None:
     """
     Together uses all that `uses` can name, on pins of the spec or of its own choice.
     """
     spec = tmp_path / "spec.yaml"
-    spec.write_text(BESIDE_ALL, encoding="utf-8")
+    spec.write_text(text, encoding="utf-8")
 
     assert build_example(spec, "Together", compiler).is_file()
 

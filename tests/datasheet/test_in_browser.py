@@ -28,6 +28,7 @@ LOOKED_AT = (
     "nano_uln2003_port_c",
     "pro-mini-8mhz_28byj48",
     "mega_stacked_shields_variable",
+    "uno_28byj48_ramp",
 )
 LEAST_POINTS = 7.5
 
@@ -40,6 +41,26 @@ motors:
   third: {drive: motor-shield, timer: 4}
   fourth: {drive: {kind: four-wire, pins: [D0, D21, D38, D39]}, timer: 5, motion: update-events}
 """
+
+
+SIX = """\
+library: Six
+board: mega
+uses: [Serial, Wire]
+motors:
+  x: {timing: {kind: compare, timer: 1, channel: A}, steps_per_turn: 200, MOVE,
+      drive: {kind: step-dir, driver: a4988, socket: ramps-1.4 X, microsteps: 16}}
+  y: {timing: {kind: compare, timer: 1, channel: B}, steps_per_turn: 400, MOVE,
+      drive: {kind: step-dir, driver: a4988, socket: ramps-1.4 Y, microsteps: 16}}
+  z: {timing: {kind: compare, timer: 3, channel: A},
+      drive: {kind: step-dir, driver: a4988, socket: ramps-1.4 Z, microsteps: 16}}
+  feed: {timing: {kind: compare, timer: 4, channel: A}, steps_per_turn: 200,
+         drive: {kind: step-dir, driver: drv8825, socket: ramps-1.4 E0, microsteps: 32}}
+  pan: {timing: {kind: compare, timer: 4, channel: B}, motion: update-events, steps_per_turn: 2048,
+        drive: {kind: four-wire, pins: [D40, D42, D44, D59]}}
+  tilt: {timing: {kind: compare, timer: 5, channel: A}, motion: update-events,
+         drive: {kind: four-wire, pins: [D50, D51, D52, D53], sequence: half}}
+""".replace("MOVE", "motion: {kind: trapezoid, cruise_speed: 1500, acceleration: 3000}")
 
 
 def chromium(folder: Path, text: str, *options: str) -> str:
@@ -184,11 +205,27 @@ def test_it_prints_on_two_pages(tmp_path: Path, path: Path) -> None:
     assert "45 checks passed" in pages[1].extract_text()
 
 
+@pytest.mark.parametrize("text", [CROWDED, SIX], ids=["four", "six"])
+def test_four_to_six_motors_print_on_three_pages(tmp_path: Path, text: str) -> None:
+    """
+    With four motors of long names, and with six of every kind of motion.
+    """
+    path, paper = tmp_path / "spec.yaml", tmp_path / "page.pdf"
+    path.write_text(text, encoding="utf-8")
+    shown = page(path, report_of(api.plan(path)))
+    chromium(tmp_path, shown, f"--print-to-pdf={paper}", "--no-pdf-header-footer")
+    pages = PdfReader(paper).pages
+
+    assert len(pages) == 3
+    assert "45 checks passed" in pages[2].extract_text()
+
+
 def test_what_is_printed_is_large_enough_to_read() -> None:
     """
     No text around the pictures is smaller on paper than 7.5 points.
     """
     printed = page(spec("mega_pan_tilt")).partition("@media print {")[2].partition("</style>")[0]
+    printed = re.sub(r".*\.axis-text.*", "", printed)  # in a picture, in its own units
     sizes = [float(size) for size in re.findall(r"font-size: ([\d.]+)pt", printed)]
 
     assert len(sizes) == printed.count("font")

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from stepgen import api
+from stepgen.datasheet.chart import motion_charts
 from stepgen.datasheet.page import PATH, render_datasheet
 from stepgen.datasheet.wiring import wiring_scene
 from stepgen.devices import Board, boards
@@ -192,8 +193,9 @@ def test_the_rates_are_what_the_timer_makes(path: Path) -> None:
     """
     The rate on the wire is f / (prescaler x ticks), the deviation that from the wanted rate.
 
-    A period is the clock over the rate, cut off, and then cut off again to whole ticks. Motors that
-    have the same share a table; the RPM is that of those which its heading names, or of all.
+    A period is the clock over the rate, cut off, and then cut off again to whole ticks; of an axis
+    it counts 1/256 clocks. Motors that have the same share a table; the RPM is that of those which
+    its heading names, or of all.
     """
     plan = api.plan(path)
     tables = Reader(page(path)).captions
@@ -201,19 +203,55 @@ def test_the_rates_are_what_the_timer_makes(path: Path) -> None:
         ((heading, *rows),) = (
             rows for caption, rows in tables.items() if motor.name in named_in(caption, ": rates")
         )
+        axis = bool(motor.motion.ladder)
         assert len(rows) > 5
-        assert rows[-1][1] == str(plan.minimum_period_cycles)
-        for wanted, period, ticks, real, ppm, *rpm in rows:
-            prescaler, count = map(int, ticks.split(" x "))
-            exact = Fraction(plan.board.f_cpu_hz, prescaler * count)
-            assert 0 <= int(period) - prescaler * count < prescaler
+        assert axis == (heading[1] == "interval, 1/256 clocks")
+        last = str(motor.motion.cruise_interval_256 if axis else plan.minimum_period_cycles)
+        assert last in {row[1] for row in rows} if axis else last == rows[-1][1]
+        gears = [
+            column
+            for column, text in enumerate(heading)
+            if text == "RPM" or motor.name in named_in(text, " RPM")
+        ]
+        assert len(gears) == (motor.steps_per_turn is not None)
+        for row in rows:
+            wanted, period, *ticks = row[: heading.index("on the wire")]
+            real, ppm = row[len(ticks) + 2 : len(ticks) + 4]
+            exact = Fraction(plan.board.f_cpu_hz * 256, int(period))
+            if not axis:
+                prescaler, count = map(int, ticks[0].split(" x "))
+                exact = Fraction(plan.board.f_cpu_hz, prescaler * count)
+                assert 0 <= int(period) - prescaler * count < prescaler
             assert float(real) == pytest.approx(float(exact), rel=1e-7)
             assert int(ppm) == pytest.approx((float(exact) / float(wanted) - 1) * 1e6, abs=1)
-            turn = motor.steps_per_turn
-            has_rpm = heading[-1] == "RPM" or motor.name in named_in(heading[-1], " RPM")
-            assert has_rpm == (turn is not None)
-            if turn is not None:
-                assert float(rpm[0]) == pytest.approx(float(exact * 60 / turn), rel=1e-4)
+            for gear in gears:
+                assert motor.steps_per_turn
+                rpm = float(exact * 60 / motor.steps_per_turn)
+                assert float(row[gear]) == pytest.approx(rpm, rel=1e-4)
+
+
+def test_the_curve_of_an_axis_is_its_ramp() -> None:
+    """
+    The cruise speed comes after (v - u) / a and (v^2 - u^2) / 2a steps, a third of the move.
+
+    So says uniform acceleration; the ramp of the library is within 2 %.
+    """
+    plan = api.plan(spec("uno_28byj48_ramp"))
+    axis, constant = motion_charts(plan)
+    (curve,) = axis.curves
+    cruise_sps, start_sps, acceleration = 1000, 200, 1000
+    steps = (cruise_sps**2 - start_sps**2) / (2 * acceleration)
+
+    top_s = next(second for second, sps in curve.corners if sps >= cruise_sps * 0.99)
+    made = re.fullmatch(r"motorMove\((\d+)\);", curve.call)
+    assert made
+    assert int(made[1]) == pytest.approx(3 * steps, rel=0.02)
+    assert top_s == pytest.approx((cruise_sps - start_sps) / acceleration, rel=0.02)
+    assert curve.corners[0][0] == 0
+    assert curve.corners[0][1] == pytest.approx(start_sps, rel=0.05)
+    assert curve.corners[-1][0] == pytest.approx(2 * top_s + steps / cruise_sps, rel=0.02)
+    assert "No ramp" not in axis.note
+    assert (constant.name, "No ramp" in constant.note) == ("feed", True)
 
 
 def test_what_only_a_verification_tells_is_not_claimed_before() -> None:

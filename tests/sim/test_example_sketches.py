@@ -93,12 +93,12 @@ def test_every_console_makes_the_steps_that_are_typed(stem: str) -> None:
     board = terminal(stem, "Console")
     board.until("type help\r\n")
     for motor in plan.motors:
-        name = f"{motor.name} " if plan.motors[1:] or motor.motion.ladder else ""
+        name = f"{motor.name} " if plan.motors[1:] else ""
         word = "move" if motor.motion.ladder else "steps"
         for steps, position in ((20, 20), (-30, -10)):
             board.enter(f"{name}{word} {steps}", "ok")
             board.wait(0.3)
-            board.enter(f"{name}status", f"{name}at rest, at step {position}")
+            board.enter(f"{name}status", f"{motor.name} at rest, at step {position}")
 
 
 @pytest.mark.parametrize("stem", ["uno_uln2003_28byj48", "leonardo_motor_shield"])
@@ -108,13 +108,14 @@ def test_the_console_moves_the_motor_as_it_is_told(stem: str) -> None:
     """
     board = terminal(stem, "Console")
     spec = SPECS / f"{stem}.yaml"
+    name = api.plan(spec).motors[0].name
     board.until("type help\r\n")
 
-    board.enter("status", "at rest, at step 0")
+    board.enter("status", f"{name} at rest, at step 0")
     board.enter("steps 120", "ok")
     board.enter("status", "", seconds=0.2)
     board.wait(0.7)
-    board.enter("status", "at rest, at step 120")
+    board.enter("status", f"{name} at rest, at step 120")
     assert set(gaps(step_cycles(board.machine, spec))) == {F_CPU_HZ // 200}
     board.enter("speed -500", "ok")
     board.enter("fly", "what? type help")
@@ -131,7 +132,7 @@ def test_the_console_moves_the_motor_as_it_is_told(stem: str) -> None:
     board.wait(0.1)
     assert len(step_cycles(board.machine, spec)) == made
     shown = board.enter("status", "")
-    assert shown.startswith("at rest, at step ")
+    assert shown.startswith(f"{name} at rest, at step ")
 
 
 def test_the_console_of_an_axis_does_what_each_word_says() -> None:
@@ -154,7 +155,7 @@ def test_the_console_of_an_axis_does_what_each_word_says() -> None:
     rest = int(board.enter("status", "").removeprefix("slide at rest, at step "))
     assert rest > 0
     board.enter("zero", "ok")
-    board.enter("slide back", "ok")
+    board.enter("back", "ok")
     board.wait(0.2)
     board.enter("halt", "ok")
     back = int(board.enter("status", "").removeprefix("slide at rest, at step "))
@@ -175,10 +176,10 @@ def test_the_console_says_what_can_be_typed_and_that_the_motor_runs() -> None:
     board.type(b"help\n")
     shown = board.until("where is it\n", seconds=0.3)
     words = [line.split()[0] for line in shown.splitlines() if line.strip()]
-    assert words == ["speed", "steps", "ramp", "stop", "hold", "release", "status"]
+    assert words == ["speed", "steps", "stop", "hold", "release", "ramp", "status"]
     board.enter("speed -500", "ok")
     board.wait(0.5)
-    position = int(board.enter("status", "").removeprefix("running, at step "))
+    position = int(board.enter("status", "").removeprefix("motor running, at step "))
     assert -280 < position < -250  # 500 steps/s, and up to 0.05 s for typing and looking
 
 
@@ -219,6 +220,29 @@ def test_a_console_for_several_motors_takes_their_names() -> None:
     pan, tilt = (gaps(step_cycles(board.machine, spec, motor)) for motor in (0, 1))
     assert set(pan) == {F_CPU_HZ // 200}
     assert set(tilt) == {F_CPU_HZ // 400}
+
+
+def test_a_console_of_two_kinds_of_motors_takes_the_words_of_each() -> None:
+    """
+    A name decides which words there are; stop and status alone are for both kinds.
+    """
+    board = terminal("uno_28byj48_ramp", "Console")
+    board.until("type help\r\n")
+
+    for typed, answer in (
+        ("feed speed 400", "ok"),
+        ("motor run", "ok"),
+        ("feed run", "what? type help"),
+        ("motor steps 20", "what? type help"),
+        ("motor speed 2000", "that is no speed, or faster than the spec's"),
+        ("stop", "ok"),
+    ):
+        board.enter(typed, answer)
+    board.wait(0.5)  # from 1000 steps/s down, 1000 steps/s slower each second: longer than that
+    board.enter("motor halt", "ok")
+    board.type(b"status\r\n")
+    lines = board.until("\nfeed at rest, at step ").splitlines()
+    assert lines[0].startswith("motor at rest, at step ")
 
 
 @pytest.mark.parametrize("stem", ["uno_variable_speed", "mega_stacked_shields_variable"])

@@ -112,6 +112,23 @@ def test_lines_of_code_fit_100_columns(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_the_header_begins_with_what_is_called_first(path: Path) -> None:
+    """
+    Of each motor it names the init before all other functions, and the units last.
+    """
+    plan = api.plan(path)
+    files = api.render(path)
+    sections = files[f"src/{plan.library.name}.h"].split("\n// ---- ")[1:]
+
+    assert len(sections) == len(plan.motors)
+    for section, motor in zip(sections, plan.motors, strict=True):
+        declared = re.findall(rf"^\w+ (?:\w+ )?{motor.name}(\w+)\(", section, re.MULTILINE)
+        units = [name for name in declared if re.search("Turns|metre", name)]
+        assert declared[0] in {"Init", "ShieldInit"}
+        assert declared[len(declared) - len(units) :] == units
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_output_tells_nothing_of_time_and_place(path: Path, tmp_path: Path) -> None:
     """
     The same spec gives the same bytes, from any folder, and none names a date or the machine.

@@ -12,7 +12,10 @@ from jinja2 import UndefinedError, nodes
 from stepgen.library.render import environment, template_dir
 
 TEMPLATES = sorted(path for path in template_dir().rglob("*.j2"))
-PARTIALS = ("apis", "kernels", "timings", "motions", "others", "timeouts")
+PARTIALS = (
+    *("addressees", "apis", "consoles", "kernels", "motions", "others", "timeouts", "timings"),
+    "watchdogs",
+)
 MOST_IFS_PER_100_LINES = 6
 ARITHMETIC = (
     nodes.Add,

@@ -28,7 +28,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed.
-constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;    // above the cruise speed of the spec
+constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;    // above the spec's speed
 constexpr int8_t MOTOR_ERROR_RUNNING = -5;     // not while the motor runs
 constexpr int8_t MOTOR_ERROR_QUEUE_FULL = -6;  // no place is left for the move
 
@@ -55,19 +55,6 @@ constexpr uint32_t motorInterval(uint32_t stepsPerSecond) {
 // when the one before was made is made at once and counted; all others stay where they are due. But
 // after more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536
 // clocks late, and nothing tells.
-
-// Steps for a way in micrometres, rounded: 12500 nm each. They wrap at 2^32.
-constexpr int32_t xStepsForMicrometres(int32_t micrometres) {
-  return static_cast<int32_t>((micrometres * 2LL + (micrometres < 0 ? -12 : 12)) / 25);
-}
-
-// The interval in 1/256 clocks for a speed in nanometres per second, 80 steps in a millimetre; 0
-// for 0, which SetSpeed refuses.
-uint32_t xIntervalForNanometresPerSecond(uint32_t speed);
-
-// Where the motor is, in nanometres: 12500 nm each, backward ones subtracted. It is read whole, and
-// wraps at 32 bits: 2147.48 mm either way.
-int32_t xReadNanometres();
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
@@ -125,6 +112,19 @@ int8_t xSetCurrentPosition(int32_t position);
 // MOTOR_ERROR_RUNNING.
 int8_t xEnableOutputs();
 int8_t xDisableOutputs();
+
+// Steps for a way in micrometres, rounded: 12500 nm each. They wrap at 2^32.
+constexpr int32_t xStepsForMicrometres(int32_t micrometres) {
+  return static_cast<int32_t>((micrometres * 2LL + (micrometres < 0 ? -12 : 12)) / 25);
+}
+
+// The interval in 1/256 clocks for a speed in nanometres per second, 80 steps in a millimetre; 0
+// for 0, which SetSpeed refuses.
+uint32_t xIntervalForNanometresPerSecond(uint32_t speed);
+
+// Where the motor is, in nanometres: 12500 nm each, backward ones subtracted. It is read whole, and
+// wraps at 32 bits: 2147.48 mm either way.
+int32_t xReadNanometres();
 
 // ---- y: A4988, 1/16 steps, timer 5 ----
 //

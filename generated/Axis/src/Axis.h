@@ -26,7 +26,7 @@
 #define STEPGEN_CLAIMS_GPIOR
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed.
-constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;    // above the cruise speed of the spec
+constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;    // above the spec's speed
 constexpr int8_t MOTOR_ERROR_RUNNING = -5;     // not while the motor runs
 constexpr int8_t MOTOR_ERROR_QUEUE_FULL = -6;  // no place is left for the move
 
@@ -53,11 +53,6 @@ constexpr uint32_t motorInterval(uint32_t stepsPerSecond) {
 // one before was made is made at once and counted; all others stay where they are due. But after
 // more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536 clocks
 // late, and nothing tells.
-
-// Steps for whole turns: 3200 in each.
-constexpr uint32_t slideStepsForTurns(uint16_t turns) {
-  return turns * 3200UL;
-}
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
@@ -115,3 +110,8 @@ int8_t slideSetCurrentPosition(int32_t position);
 // MOTOR_ERROR_RUNNING.
 int8_t slideEnableOutputs();
 int8_t slideDisableOutputs();
+
+// Steps for whole turns: 3200 in each.
+constexpr uint32_t slideStepsForTurns(uint16_t turns) {
+  return turns * 3200UL;
+}

@@ -78,11 +78,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // it, also those of one that was released. Call xShieldInit() and yShieldInit() before any of them
 // moves.
 
-// Steps for whole turns: 3200 in each.
-constexpr uint32_t xStepsForTurns(uint16_t turns) {
-  return turns * 3200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
 // meanwhile needs a resistor at its ENABLE.
@@ -118,6 +113,11 @@ int8_t xHold();
 // MOTOR_ERROR_RUNNING.
 int8_t xRelease();
 
+// Steps for whole turns: 3200 in each.
+constexpr uint32_t xStepsForTurns(uint16_t turns) {
+  return turns * 3200UL;
+}
+
 // ---- y: TMC2209, 1/8 steps, timer 2 ----
 //
 //   signal    pin   port bit
@@ -135,11 +135,6 @@ int8_t xRelease();
 // D8 is the enable for x too: as long as one of these motors needs current, the coils of all have
 // it, also those of one that was released. Call xShieldInit() and yShieldInit() before any of them
 // moves.
-
-// Steps for whole turns: 1600 in each.
-constexpr uint32_t yStepsForTurns(uint16_t turns) {
-  return turns * 1600UL;
-}
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
@@ -180,3 +175,8 @@ int8_t yHold();
 // Switches the coils off, so that the shaft turns freely, unless x needs the current. Returns 0, or
 // MOTOR_ERROR_RUNNING.
 int8_t yRelease();
+
+// Steps for whole turns: 1600 in each.
+constexpr uint32_t yStepsForTurns(uint16_t turns) {
+  return turns * 1600UL;
+}

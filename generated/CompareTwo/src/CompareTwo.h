@@ -74,11 +74,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536 clocks
 // late, and nothing tells.
 
-// Steps for whole turns: 3200 in each.
-constexpr uint32_t leftStepsForTurns(uint16_t turns) {
-  return turns * 3200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
 // meanwhile needs a resistor at its ENABLE.
@@ -118,6 +113,11 @@ int8_t leftHold();
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t leftRelease();
 
+// Steps for whole turns: 3200 in each.
+constexpr uint32_t leftStepsForTurns(uint16_t turns) {
+  return turns * 3200UL;
+}
+
 // ---- right: A4988, 1/16 steps, timer 1 ----
 //
 //   signal    pin   port bit
@@ -131,11 +131,6 @@ int8_t leftRelease();
 // one before was made is made at once and counted; all others stay where they are due. But after
 // more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536 clocks
 // late, and nothing tells.
-
-// Steps for whole turns: 3200 in each.
-constexpr uint32_t rightStepsForTurns(uint16_t turns) {
-  return turns * 3200UL;
-}
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
@@ -175,3 +170,8 @@ int8_t rightHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t rightRelease();
+
+// Steps for whole turns: 3200 in each.
+constexpr uint32_t rightStepsForTurns(uint16_t turns) {
+  return turns * 3200UL;
+}

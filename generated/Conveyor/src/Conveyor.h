@@ -72,11 +72,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // or inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
 
-// Steps for whole turns: 200 in each.
-constexpr uint32_t beltStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void beltShieldInit();
@@ -120,3 +115,8 @@ int8_t beltHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t beltRelease();
+
+// Steps for whole turns: 200 in each.
+constexpr uint32_t beltStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}

@@ -71,11 +71,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // ATOMIC_BLOCK.
 // Timer 4 belongs to the motor: no analogWrite() on D6, D7 or D8.
 
-// Steps for whole turns: 400 in each.
-constexpr uint32_t motorStepsForTurns(uint16_t turns) {
-  return turns * 400UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void motorShieldInit();
@@ -108,3 +103,8 @@ int8_t motorHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t motorRelease();
+
+// Steps for whole turns: 400 in each.
+constexpr uint32_t motorStepsForTurns(uint16_t turns) {
+  return turns * 400UL;
+}

@@ -39,7 +39,7 @@ constexpr uint8_t MOTOR_STAT_SPIN_FIXED = 0x40;       // running at a speed that
 constexpr uint8_t MOTOR_STAT_MISSED = 0x80;           // a step came too late; a start clears it
 
 // What the functions return: 0 is fine, below 0 refused and nothing changed, above 0 a warning.
-constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // above the cruise speed of the spec
+constexpr int8_t MOTOR_ERROR_TOO_FAST = -1;   // below MOTOR_MIN_TOP or above the spec's speed
 constexpr int8_t MOTOR_ERROR_TOO_SLOW = -2;   // above MOTOR_MAX_TOP
 constexpr int8_t MOTOR_ERROR_CONTROL = -3;    // a control bit that this motor does not have
 constexpr int8_t MOTOR_ERROR_RUNNING = -5;    // not while the motor runs
@@ -80,11 +80,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // one before was made is made at once and counted; all others stay where they are due. But after
 // more than 32000 clocks with interrupts off a step, and all that follow it, can come 65536 clocks
 // late, and nothing tells.
-
-// Steps for whole turns, rounded: 4075.77 in each.
-constexpr uint32_t motorStepsForTurns(uint16_t turns) {
-  return static_cast<uint32_t>((turns * 1650688ULL + 202) / 405);
-}
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
@@ -137,6 +132,11 @@ int8_t motorSetCurrentPosition(int32_t position);
 // MOTOR_ERROR_RUNNING.
 int8_t motorEnableOutputs();
 int8_t motorDisableOutputs();
+
+// Steps for whole turns, rounded: 4075.77 in each.
+constexpr uint32_t motorStepsForTurns(uint16_t turns) {
+  return static_cast<uint32_t>((turns * 1650688ULL + 202) / 405);
+}
 
 // ---- feed: A4988, 1/16 steps, timer 1 ----
 //

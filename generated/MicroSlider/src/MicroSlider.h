@@ -85,19 +85,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9, D10 or D11.
 
-// Steps for a way in micrometres, rounded: 200000 nm each. They wrap at 2^32.
-constexpr uint32_t carriageStepsForMicrometres(uint32_t micrometres) {
-  return static_cast<uint32_t>((micrometres * 1ULL + 100) / 200);
-}
-
-// The virtual timer TOP for a speed in nanometres per second, 5 steps in a millimetre; 0 for 0,
-// which stops the motor.
-uint32_t carriageTimerCalcNanometresPerSecond(uint32_t speed);
-
-// Where the motor is, in nanometres: 200000 nm each, backward ones subtracted. It is read whole,
-// and wraps at 32 bits: 2147.48 mm either way.
-int32_t carriageReadNanometres();
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
 // meanwhile needs a resistor at its ENABLE.
@@ -154,6 +141,19 @@ int8_t carriageHold();
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t carriageRelease();
 
+// Steps for a way in micrometres, rounded: 200000 nm each. They wrap at 2^32.
+constexpr uint32_t carriageStepsForMicrometres(uint32_t micrometres) {
+  return static_cast<uint32_t>((micrometres * 1ULL + 100) / 200);
+}
+
+// The virtual timer TOP for a speed in nanometres per second, 5 steps in a millimetre; 0 for 0,
+// which stops the motor.
+uint32_t carriageTimerCalcNanometresPerSecond(uint32_t speed);
+
+// Where the motor is, in nanometres: 200000 nm each, backward ones subtracted. It is read whole,
+// and wraps at 32 bits: 2147.48 mm either way.
+int32_t carriageReadNanometres();
+
 // ---- head: four switches (ULN2003 and the like), half steps, timer 3 ----
 //
 //   signal    pin   port bit
@@ -165,11 +165,6 @@ int8_t carriageRelease();
 // The sketch may change other bits of port F with digitalWrite(), with single-bit sbi/cbi, or
 // inside ATOMIC_BLOCK.
 // Timer 3 belongs to the motor: no analogWrite() on D5.
-
-// Steps for whole turns, rounded: 4075.77 in each.
-constexpr uint32_t headStepsForTurns(uint16_t turns) {
-  return static_cast<uint32_t>((turns * 1650688ULL + 202) / 405);
-}
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
@@ -203,3 +198,8 @@ int8_t headHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t headRelease();
+
+// Steps for whole turns, rounded: 4075.77 in each.
+constexpr uint32_t headStepsForTurns(uint16_t turns) {
+  return static_cast<uint32_t>((turns * 1650688ULL + 202) / 405);
+}

@@ -75,11 +75,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // inside ATOMIC_BLOCK.
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
 
-// Steps for whole turns: 200 in each.
-constexpr uint32_t nearStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void nearShieldInit();
@@ -112,6 +107,11 @@ int8_t nearHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t nearRelease();
+
+// Steps for whole turns: 200 in each.
+constexpr uint32_t nearStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}
 
 // ---- far: four switches (ULN2003 and the like), half steps, timer 4 ----
 //

@@ -74,11 +74,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of port K with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 4 belongs to the motor: no analogWrite() on D6, D7 or D8.
 
-// Steps for whole turns, rounded: 4075.77 in each.
-constexpr uint32_t panStepsForTurns(uint16_t turns) {
-  return static_cast<uint32_t>((turns * 1650688ULL + 202) / 405);
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void panShieldInit();
@@ -112,6 +107,11 @@ int8_t panHold();
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t panRelease();
 
+// Steps for whole turns, rounded: 4075.77 in each.
+constexpr uint32_t panStepsForTurns(uint16_t turns) {
+  return static_cast<uint32_t>((turns * 1650688ULL + 202) / 405);
+}
+
 // ---- tilt: Arduino Motor Shield (L298), full steps, timer 3 ----
 //
 //   signal    pin   port bit
@@ -126,11 +126,6 @@ int8_t panRelease();
 // or inside ATOMIC_BLOCK. The sketch may change other bits of port H with digitalWrite() or inside
 // ATOMIC_BLOCK.
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
-
-// Steps for whole turns: 200 in each.
-constexpr uint32_t tiltStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
@@ -164,3 +159,8 @@ int8_t tiltHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t tiltRelease();
+
+// Steps for whole turns: 200 in each.
+constexpr uint32_t tiltStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}

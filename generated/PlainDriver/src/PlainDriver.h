@@ -77,11 +77,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
 
-// Steps for whole turns: 6400 in each.
-constexpr uint32_t motorStepsForTurns(uint16_t turns) {
-  return turns * 6400UL;
-}
-
 // Makes the pins outputs, at position 0. Call it once, from setup(). Until then, and from any reset
 // on, they are inputs and drive nothing.
 void motorShieldInit();
@@ -130,3 +125,8 @@ uint8_t motorReadStatus();
 // Where the motor is: 0 after motorShieldInit(), +1 for each step,
 // -1 for each with MOTOR_CTRL_DIRECTION. It wraps at 32 bits.
 int32_t motorReadPosition();
+
+// Steps for whole turns: 6400 in each.
+constexpr uint32_t motorStepsForTurns(uint16_t turns) {
+  return turns * 6400UL;
+}

@@ -69,11 +69,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // Port G belongs to the motor: the sketch must not write to it.
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
 
-// Steps for whole turns: 200 in each.
-constexpr uint32_t motorStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void motorShieldInit();
@@ -106,3 +101,8 @@ int8_t motorHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t motorRelease();
+
+// Steps for whole turns: 200 in each.
+constexpr uint32_t motorStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}

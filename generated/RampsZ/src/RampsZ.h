@@ -68,19 +68,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // The sketch may change other bits of ports K and L with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 5 belongs to the motor: no analogWrite() on D46, D45 or D44.
 
-// Steps for a way in micrometres, rounded: 250 nm each. They wrap at 2^32.
-constexpr uint32_t zStepsForMicrometres(uint32_t micrometres) {
-  return micrometres * 4UL;
-}
-
-// The virtual timer TOP for a speed in nanometres per second, 4000 steps in a millimetre; 0 for 0,
-// which stops the motor.
-uint32_t zTimerCalcNanometresPerSecond(uint32_t speed);
-
-// Where the motor is, in nanometres: 250 nm each, backward ones subtracted. It is read whole, and
-// wraps at 32 bits: 2147.48 mm either way.
-int32_t zReadNanometres();
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing; a driver that must be off
 // meanwhile needs a resistor at its ENABLE.
@@ -114,3 +101,16 @@ int8_t zHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t zRelease();
+
+// Steps for a way in micrometres, rounded: 250 nm each. They wrap at 2^32.
+constexpr uint32_t zStepsForMicrometres(uint32_t micrometres) {
+  return micrometres * 4UL;
+}
+
+// The virtual timer TOP for a speed in nanometres per second, 4000 steps in a millimetre; 0 for 0,
+// which stops the motor.
+uint32_t zTimerCalcNanometresPerSecond(uint32_t speed);
+
+// Where the motor is, in nanometres: 250 nm each, backward ones subtracted. It is read whole, and
+// wraps at 32 bits: 2147.48 mm either way.
+int32_t zReadNanometres();

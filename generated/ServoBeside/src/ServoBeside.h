@@ -77,11 +77,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // MOTOR_STAT_MISSED is set, and the next one is on time again; but after more than 1900 clocks a
 // step and all that follow it can come 2048 clocks late, and nothing tells.
 
-// Steps for whole turns: 200 in each.
-constexpr uint32_t motorStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void motorShieldInit();
@@ -119,3 +114,8 @@ int8_t motorHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t motorRelease();
+
+// Steps for whole turns: 200 in each.
+constexpr uint32_t motorStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}

@@ -90,11 +90,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // of all have it, also those of one that was released. Call lowerShieldInit() and upperShieldInit()
 // before any of them moves.
 
-// Steps for whole turns: 200 in each.
-constexpr uint32_t lowerStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void lowerShieldInit();
@@ -129,6 +124,11 @@ int8_t lowerHold();
 // 0, or MOTOR_ERROR_RUNNING.
 int8_t lowerRelease();
 
+// Steps for whole turns: 200 in each.
+constexpr uint32_t lowerStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}
+
 // ---- upper: Arduino Motor Shield (L298), stacked, full steps, timer 5 ----
 //
 //   signal    pin   port bit
@@ -144,11 +144,6 @@ int8_t lowerRelease();
 // D3 and D11 are the enables for lower too: as long as one of these motors needs current, the coils
 // of all have it, also those of one that was released. Call lowerShieldInit() and upperShieldInit()
 // before any of them moves.
-
-// Steps for whole turns: 200 in each.
-constexpr uint32_t upperStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
@@ -205,3 +200,8 @@ int8_t upperHold();
 // Switches the coils off, so that the shaft turns freely, unless lower needs the current. Returns
 // 0, or MOTOR_ERROR_RUNNING.
 int8_t upperRelease();
+
+// Steps for whole turns: 200 in each.
+constexpr uint32_t upperStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}

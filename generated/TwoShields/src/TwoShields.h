@@ -75,11 +75,6 @@ uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 // or inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D11, D12 or D13.
 
-// Steps for whole turns: 200 in each.
-constexpr uint32_t lowerStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void lowerShieldInit();
@@ -113,6 +108,11 @@ int8_t lowerHold();
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t lowerRelease();
 
+// Steps for whole turns: 200 in each.
+constexpr uint32_t lowerStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}
+
 // ---- upper: Arduino Motor Shield (L298), stacked, half steps, timer 3 ----
 //
 //   signal    pin   port bit
@@ -123,11 +123,6 @@ int8_t lowerRelease();
 //
 // The sketch may change other bits of port H with digitalWrite() or inside ATOMIC_BLOCK.
 // Timer 3 belongs to the motor: no analogWrite() on D5, D2 or D3.
-
-// Steps for whole turns: 400 in each.
-constexpr uint32_t upperStepsForTurns(uint16_t turns) {
-  return turns * 400UL;
-}
 
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
@@ -161,3 +156,8 @@ int8_t upperHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t upperRelease();
+
+// Steps for whole turns: 400 in each.
+constexpr uint32_t upperStepsForTurns(uint16_t turns) {
+  return turns * 400UL;
+}

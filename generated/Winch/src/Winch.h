@@ -87,11 +87,6 @@ int8_t motorWatchdogFired();
 // or inside ATOMIC_BLOCK.
 // Timer 1 belongs to the motor: no analogWrite() on D9 or D10.
 
-// Steps for whole turns: 200 in each.
-constexpr uint32_t drumStepsForTurns(uint16_t turns) {
-  return turns * 200UL;
-}
-
 // Makes the pins outputs, with the coils off, at position 0. Call it once, from setup(). Until
 // then, and from any reset on, they are inputs and drive nothing.
 void drumShieldInit();
@@ -135,3 +130,8 @@ int8_t drumHold();
 
 // Switches the coils off, so that the shaft turns freely. Returns 0, or MOTOR_ERROR_RUNNING.
 int8_t drumRelease();
+
+// Steps for whole turns: 200 in each.
+constexpr uint32_t drumStepsForTurns(uint16_t turns) {
+  return turns * 200UL;
+}

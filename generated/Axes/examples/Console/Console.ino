@@ -1,28 +1,28 @@
-// x and y and z by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and
-// type help.
+// x, y and z by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and type help.
 //
-// The motors move while the sketch reads and answers; nothing in it waits.
+// The sketch reads and answers while they move; nothing in it waits.
 // The spec's `uses` does not name Serial: the highest rate is proven without its interrupts. Name
 // it there before going to that limit.
 
 #include <Axes.h>
 
 static const char kHelp[] PROGMEM =
-    "to 2000      move to that position\n"
-    "move -2000   so many steps from here\n"
-    "speed 500    cruise at 500 steps/s from now on\n"
-    "run          forward without an end; back: backward\n"
-    "stop         slow down to rest; halt: at once\n"
-    "zero         call this place 0, while it stands\n"
-    "on           coils on, while it stands; off: off\n"
-    "status       does it run, and where is it\n"
-    "x to 2000   the same of x\n"
-    "y to 2000   the same of y\n"
-    "z to 2000   the same of z\n"
-    ;
+    "AXIS to 2000      move to that position\n"
+    "AXIS move -2000   so many steps from here\n"
+    "AXIS speed 500    cruise at 500 steps/s from now on\n"
+    "AXIS run          forward without an end; back: backward\n"
+    "AXIS stop         slow down to rest; halt: at once\n"
+    "AXIS zero         call this place 0, while it stands\n"
+    "AXIS on           coils on, while it stands\n"
+    "AXIS off          coils off, while it stands\n"
+    "AXIS status       does it run, and where is it\n"
+    "stop, status       the same of all\n"
+    "AXIS is x\n"
+    "AXIS is y\n"
+    "AXIS is z\n";
 
-// What can be asked of a motor.
-struct Motor {
+// What can be asked of a motor with ramps.
+struct Axis {
   const char *name;
   int8_t (*moveTo)(int32_t target);
   int8_t (*move)(int32_t steps);
@@ -34,19 +34,19 @@ struct Motor {
   int8_t (*setPosition)(int32_t position);
   int32_t (*position)();
   bool (*isRunning)();
-  int8_t (*enable)();   // null where nothing switches the current
-  int8_t (*disable)();  // the same
+  int8_t (*on)();
+  int8_t (*off)();
 };
 
-static const Motor motors[] = {
-    {"x", xMoveTo, xMove, xSetSpeed, xRunForward,
-     xRunBackward, xStop, xHalt, xSetCurrentPosition,
+static const Axis axes[] = {
+    {"x",
+     xMoveTo, xMove, xSetSpeed, xRunForward, xRunBackward, xStop, xHalt, xSetCurrentPosition,
      xCurrentPosition, xIsRunning, xEnableOutputs, xDisableOutputs},
-    {"y", yMoveTo, yMove, ySetSpeed, yRunForward,
-     yRunBackward, yStop, yHalt, ySetCurrentPosition,
+    {"y",
+     yMoveTo, yMove, ySetSpeed, yRunForward, yRunBackward, yStop, yHalt, ySetCurrentPosition,
      yCurrentPosition, yIsRunning, yEnableOutputs, yDisableOutputs},
-    {"z", zMoveTo, zMove, zSetSpeed, zRunForward,
-     zRunBackward, zStop, zHalt, zSetCurrentPosition,
+    {"z",
+     zMoveTo, zMove, zSetSpeed, zRunForward, zRunBackward, zStop, zHalt, zSetCurrentPosition,
      zCurrentPosition, zIsRunning, zEnableOutputs, zDisableOutputs},
 };
 
@@ -54,6 +54,8 @@ constexpr int kRoom = 62;  // no line that is printed is longer; the core has ro
 
 static char line[64];                   // what was typed; more than fits is cut off
 static const char *helpLeft = nullptr;  // what of the help is still to be printed
+constexpr uint8_t kMotors = 3;
+static uint8_t shown = kMotors;         // the motor whose status is printed next, or past all
 
 // Prints the next line of the help; behind the last one there is none.
 static void printHelpLine() {
@@ -95,12 +97,31 @@ static bool readNumber(const char *text, int32_t &number) {
 
 // Says what the library answered.
 static void answer(int8_t result) {
-  if (result == MOTOR_ERROR_TOO_FAST) {
-    Serial.println(F("that is no speed, or faster than the spec's"));
-  } else if (result == MOTOR_ERROR_RUNNING) {
+  if (result == MOTOR_ERROR_RUNNING) {
     Serial.println(F("not while it runs"));
+    return;
+  }
+  Serial.println(result ? F("refused") : F("ok"));
+}
+
+// Says what was not understood.
+static void ask() {
+  Serial.println(F("what? type help"));
+}
+
+// Says where a motor is, and whether it moves.
+static void printPosition(const char *name, bool runs, int32_t position) {
+  Serial.print(name);
+  Serial.print(runs ? F(" running, at step ") : F(" at rest, at step "));
+  Serial.println(position);
+}
+
+// Cruises at that speed from now on.
+static void cruise(const Axis &axis, int32_t speed) {
+  if (axis.setSpeed(speed > 0 ? motorInterval(speed) : 0) == 0) {
+    answer(0);
   } else {
-    Serial.println(F("ok"));
+    Serial.println(F("that is no speed, or faster than the spec's"));
   }
 }
 
@@ -110,69 +131,87 @@ static void act(void (*function)()) {
   answer(0);
 }
 
-// Says whether a motor runs, and where it is.
-static void printStatus(const Motor &motor) {
-  Serial.print(motor.name);
-  Serial.print(motor.isRunning() ? F(" running, at step ") : F(" at rest, at step "));
-  Serial.println(motor.position());
+static void stop(const Axis &axis) {
+  axis.stop();
+}
+
+static void printStatus(const Axis &axis) {
+  printPosition(axis.name, axis.isRunning(), axis.position());
 }
 
 // Does what needs a number; tells whether the word is such a one.
-static bool obeyNumber(const Motor &motor, const char *word, int32_t number) {
+static bool obeyNumber(const Axis &axis, const char *word, int32_t number) {
   if (is(word, F("to"))) {
-    answer(motor.moveTo(number));
+    answer(axis.moveTo(number));
   } else if (is(word, F("move"))) {
-    answer(motor.move(number));
+    answer(axis.move(number));
   } else if (is(word, F("speed"))) {
-    answer(motor.setSpeed(number > 0 ? motorInterval(number) : 0));
+    cruise(axis, number);
   } else {
     return false;
   }
   return true;
 }
 
-// Does what the words behind the name of a motor say.
-static void obey(const Motor &motor, const char *word, const char *rest) {
+// Does what the words say.
+static void obey(const Axis &axis, const char *word, const char *rest) {
   int32_t number = 0;
-  if (readNumber(rest, number) && obeyNumber(motor, word, number)) return;
+  if (readNumber(rest, number) && obeyNumber(axis, word, number)) return;
   if (is(word, F("run"))) {
-    act(motor.runForward);
+    act(axis.runForward);
   } else if (is(word, F("back"))) {
-    act(motor.runBackward);
+    act(axis.runBackward);
   } else if (is(word, F("stop"))) {
-    act(motor.stop);
+    stop(axis);
+    answer(0);
   } else if (is(word, F("halt"))) {
-    act(motor.halt);
+    act(axis.halt);
   } else if (is(word, F("zero"))) {
-    answer(motor.setPosition(0));
-  } else if (is(word, F("on")) && motor.enable) {
-    answer(motor.enable());
-  } else if (is(word, F("off")) && motor.disable) {
-    answer(motor.disable());
+    answer(axis.setPosition(0));
+  } else if (is(word, F("on"))) {
+    answer(axis.on());
+  } else if (is(word, F("off"))) {
+    answer(axis.off());
   } else if (is(word, F("status"))) {
-    printStatus(motor);
+    printStatus(axis);
   } else {
-    Serial.println(F("what? type help"));
+    ask();
   }
 }
 
-// Does what the line says; without the name of a motor, of the first one.
+// Stops every motor.
+static void stopAll() {
+  for (const Axis &motor : axes) stop(motor);
+}
+
+// Says how the next motor is.
+static void printNextStatus() {
+  switch (shown++) {
+    case 0: return printStatus(axes[0]);
+    case 1: return printStatus(axes[1]);
+    case 2: return printStatus(axes[2]);
+  }
+}
+
+// Does what the line says.
 static void obeyLine() {
-  const char *word = strtok(line, " ");
-  if (!word) return;
-  if (is(word, F("help"))) {
-    helpLeft = kHelp;
-    return;
-  }
-  const Motor *chosen = motors;
-  for (const Motor &motor : motors) {
-    if (strcmp(word, motor.name) != 0) continue;
-    chosen = &motor;
-    word = strtok(nullptr, " ");
-    break;
-  }
+  const char *first = strtok(line, " ");
+  const char *word = strtok(nullptr, " ");
   const char *rest = strtok(nullptr, "");
-  if (word) obey(*chosen, word, rest);
+  if (!first) return;
+  for (const Axis &motor : axes) {
+    if (word && strcmp(first, motor.name) == 0) return obey(motor, word, rest);
+  }
+  if (is(first, F("stop")) && !word) {
+    stopAll();
+    answer(0);
+  } else if (is(first, F("status")) && !word) {
+    shown = 0;
+  } else if (is(first, F("help")) && !word) {
+    helpLeft = kHelp;
+  } else {
+    ask();
+  }
 }
 
 void setup() {
@@ -187,6 +226,8 @@ void loop() {
   if (Serial.availableForWrite() < kRoom) return;  // the last line is still on its way
   if (helpLeft) {
     printHelpLine();
+  } else if (shown < kMotors) {
+    printNextStatus();
   } else if (readLine()) {
     obeyLine();
   }

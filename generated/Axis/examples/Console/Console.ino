@@ -1,7 +1,6 @@
-// slide by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and
-// type help.
+// slide by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and type help.
 //
-// The motors move while the sketch reads and answers; nothing in it waits.
+// The sketch reads and answers while they move; nothing in it waits.
 // The spec's `uses` does not name Serial: the highest rate is proven without its interrupts. Name
 // it there before going to that limit.
 
@@ -14,13 +13,12 @@ static const char kHelp[] PROGMEM =
     "run          forward without an end; back: backward\n"
     "stop         slow down to rest; halt: at once\n"
     "zero         call this place 0, while it stands\n"
-    "on           coils on, while it stands; off: off\n"
-    "status       does it run, and where is it\n"
-    "slide to 2000   the same of slide\n"
-    ;
+    "on           coils on, while it stands\n"
+    "off          coils off, while it stands\n"
+    "status       does it run, and where is it\n";
 
-// What can be asked of a motor.
-struct Motor {
+// What can be asked of a motor with ramps.
+struct Axis {
   const char *name;
   int8_t (*moveTo)(int32_t target);
   int8_t (*move)(int32_t steps);
@@ -32,14 +30,15 @@ struct Motor {
   int8_t (*setPosition)(int32_t position);
   int32_t (*position)();
   bool (*isRunning)();
-  int8_t (*enable)();   // null where nothing switches the current
-  int8_t (*disable)();  // the same
+  int8_t (*on)();
+  int8_t (*off)();
 };
 
-static const Motor motors[] = {
-    {"slide", slideMoveTo, slideMove, slideSetSpeed, slideRunForward,
-     slideRunBackward, slideStop, slideHalt, slideSetCurrentPosition,
-     slideCurrentPosition, slideIsRunning, slideEnableOutputs, slideDisableOutputs},
+static const Axis axes[] = {
+    {"slide",
+     slideMoveTo, slideMove, slideSetSpeed, slideRunForward, slideRunBackward, slideStop,
+     slideHalt, slideSetCurrentPosition, slideCurrentPosition, slideIsRunning,
+     slideEnableOutputs, slideDisableOutputs},
 };
 
 constexpr int kRoom = 62;  // no line that is printed is longer; the core has room for more
@@ -87,12 +86,31 @@ static bool readNumber(const char *text, int32_t &number) {
 
 // Says what the library answered.
 static void answer(int8_t result) {
-  if (result == MOTOR_ERROR_TOO_FAST) {
-    Serial.println(F("that is no speed, or faster than the spec's"));
-  } else if (result == MOTOR_ERROR_RUNNING) {
+  if (result == MOTOR_ERROR_RUNNING) {
     Serial.println(F("not while it runs"));
+    return;
+  }
+  Serial.println(result ? F("refused") : F("ok"));
+}
+
+// Says what was not understood.
+static void ask() {
+  Serial.println(F("what? type help"));
+}
+
+// Says where a motor is, and whether it moves.
+static void printPosition(const char *name, bool runs, int32_t position) {
+  Serial.print(name);
+  Serial.print(runs ? F(" running, at step ") : F(" at rest, at step "));
+  Serial.println(position);
+}
+
+// Cruises at that speed from now on.
+static void cruise(const Axis &axis, int32_t speed) {
+  if (axis.setSpeed(speed > 0 ? motorInterval(speed) : 0) == 0) {
+    answer(0);
   } else {
-    Serial.println(F("ok"));
+    Serial.println(F("that is no speed, or faster than the spec's"));
   }
 }
 
@@ -102,69 +120,64 @@ static void act(void (*function)()) {
   answer(0);
 }
 
-// Says whether a motor runs, and where it is.
-static void printStatus(const Motor &motor) {
-  Serial.print(motor.name);
-  Serial.print(motor.isRunning() ? F(" running, at step ") : F(" at rest, at step "));
-  Serial.println(motor.position());
+static void stop(const Axis &axis) {
+  axis.stop();
+}
+
+static void printStatus(const Axis &axis) {
+  printPosition(axis.name, axis.isRunning(), axis.position());
 }
 
 // Does what needs a number; tells whether the word is such a one.
-static bool obeyNumber(const Motor &motor, const char *word, int32_t number) {
+static bool obeyNumber(const Axis &axis, const char *word, int32_t number) {
   if (is(word, F("to"))) {
-    answer(motor.moveTo(number));
+    answer(axis.moveTo(number));
   } else if (is(word, F("move"))) {
-    answer(motor.move(number));
+    answer(axis.move(number));
   } else if (is(word, F("speed"))) {
-    answer(motor.setSpeed(number > 0 ? motorInterval(number) : 0));
+    cruise(axis, number);
   } else {
     return false;
   }
   return true;
 }
 
-// Does what the words behind the name of a motor say.
-static void obey(const Motor &motor, const char *word, const char *rest) {
+// Does what the words say.
+static void obey(const Axis &axis, const char *word, const char *rest) {
   int32_t number = 0;
-  if (readNumber(rest, number) && obeyNumber(motor, word, number)) return;
+  if (readNumber(rest, number) && obeyNumber(axis, word, number)) return;
   if (is(word, F("run"))) {
-    act(motor.runForward);
+    act(axis.runForward);
   } else if (is(word, F("back"))) {
-    act(motor.runBackward);
+    act(axis.runBackward);
   } else if (is(word, F("stop"))) {
-    act(motor.stop);
+    stop(axis);
+    answer(0);
   } else if (is(word, F("halt"))) {
-    act(motor.halt);
+    act(axis.halt);
   } else if (is(word, F("zero"))) {
-    answer(motor.setPosition(0));
-  } else if (is(word, F("on")) && motor.enable) {
-    answer(motor.enable());
-  } else if (is(word, F("off")) && motor.disable) {
-    answer(motor.disable());
+    answer(axis.setPosition(0));
+  } else if (is(word, F("on"))) {
+    answer(axis.on());
+  } else if (is(word, F("off"))) {
+    answer(axis.off());
   } else if (is(word, F("status"))) {
-    printStatus(motor);
+    printStatus(axis);
   } else {
-    Serial.println(F("what? type help"));
+    ask();
   }
 }
 
-// Does what the line says; without the name of a motor, of the first one.
+// Does what the line says.
 static void obeyLine() {
   const char *word = strtok(line, " ");
+  const char *rest = strtok(nullptr, "");
   if (!word) return;
   if (is(word, F("help"))) {
     helpLeft = kHelp;
-    return;
+  } else {
+    obey(axes[0], word, rest);
   }
-  const Motor *chosen = motors;
-  for (const Motor &motor : motors) {
-    if (strcmp(word, motor.name) != 0) continue;
-    chosen = &motor;
-    word = strtok(nullptr, " ");
-    break;
-  }
-  const char *rest = strtok(nullptr, "");
-  if (word) obey(*chosen, word, rest);
 }
 
 void setup() {

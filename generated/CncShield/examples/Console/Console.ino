@@ -1,7 +1,6 @@
-// x and y by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and
-// type help.
+// x and y by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and type help.
 //
-// The motors turn while the sketch reads and answers; nothing in it waits.
+// The sketch reads and answers while they move; nothing in it waits.
 // The spec's `uses` does not name Serial: the highest rate is proven without its interrupts. Name
 // it there before going to that limit.
 
@@ -10,44 +9,37 @@
 static const char kHelp[] PROGMEM =
     "MOTOR speed 500    turn at 500 steps/s, backward with -500\n"
     "MOTOR steps 2000   make 2000 steps at that speed, or -2000\n"
-    "MOTOR stop         at once, coils off; stop alone: all\n"
+    "MOTOR stop         at once, coils off\n"
     "MOTOR hold         coils on, while it stands\n"
     "MOTOR release      coils off, while it stands\n"
     "MOTOR status       does it run, and where is it\n"
-    "status             the same of all; MOTOR is a name there\n";
+    "stop, status       the same of all\n"
+    "MOTOR is x\n"
+    "MOTOR is y\n";
 
 // What can be asked of a motor.
 struct Motor {
   const char *name;
+  uint32_t interval;  // I/O clocks between two steps of the next motion
   int8_t (*setSpeed)(uint8_t control, uint32_t interval, uint32_t limit);
   uint8_t (*readStatus)();
   int32_t (*readPosition)();
-  int8_t (*hold)();     // null where nothing switches the current
-  int8_t (*release)();  // the same
-  int8_t (*ramp)();   // null where the speed cannot change by itself
-  uint32_t interval;  // I/O clocks between two steps of the next motion
+  int8_t (*hold)();
+  int8_t (*release)();
 };
-
-static int8_t xStart(uint8_t control, uint32_t interval, uint32_t limit) {
-  return xSetSpeed(control, interval, limit);
-}
-
-static int8_t yStart(uint8_t control, uint32_t interval, uint32_t limit) {
-  return ySetSpeed(control, interval, limit);
-}
 
 static Motor motors[] = {
-    {"x", xStart, xReadStatus, xReadPosition,
-     xHold, xRelease, nullptr, 0},
-    {"y", yStart, yReadStatus, yReadPosition,
-     yHold, yRelease, nullptr, 0},
+    {"x", 0,
+     xSetSpeed, xReadStatus, xReadPosition, xHold, xRelease},
+    {"y", 0,
+     ySetSpeed, yReadStatus, yReadPosition, yHold, yRelease},
 };
-constexpr uint8_t kMotors = sizeof(motors) / sizeof(motors[0]);
 
 constexpr int kRoom = 62;  // no line that is printed is longer; the core has room for more
 
 static char line[64];                   // what was typed; more than fits is cut off
 static const char *helpLeft = nullptr;  // what of the help is still to be printed
+constexpr uint8_t kMotors = 2;
 static uint8_t shown = kMotors;         // the motor whose status is printed next, or past all
 
 // Prints the next line of the help; behind the last one there is none.
@@ -80,12 +72,33 @@ static bool is(const char *word, const __FlashStringHelper *known) {
   return strcmp_P(word, reinterpret_cast<const char *>(known)) == 0;
 }
 
-// Reads a whole number that is not 0; tells whether there is one and nothing else.
+// Reads a whole number; tells whether there is one and nothing else.
 static bool readNumber(const char *text, int32_t &number) {
   if (!text) return false;
   char *end;
   number = strtol(text, &end, 10);
-  return end != text && *end == '\0' && number != 0;
+  return end != text && *end == '\0';
+}
+
+// Says what the library answered.
+static void answer(int8_t result) {
+  if (result == MOTOR_ERROR_RUNNING) {
+    Serial.println(F("not while it runs"));
+    return;
+  }
+  Serial.println(result ? F("refused") : F("ok"));
+}
+
+// Says what was not understood.
+static void ask() {
+  Serial.println(F("what? type help"));
+}
+
+// Says where a motor is, and whether it moves.
+static void printPosition(const char *name, bool runs, int32_t position) {
+  Serial.print(name);
+  Serial.print(runs ? F(" running, at step ") : F(" at rest, at step "));
+  Serial.println(position);
 }
 
 // Without its sign.
@@ -104,56 +117,61 @@ static uint32_t intervalFor(int32_t speed) {
   return magnitude(speed) > 65535 ? 1 : motorTimerCalcPerSecond(magnitude(speed));
 }
 
-// Says what the library answered.
-static void answer(int8_t result) {
+// Turns at that speed until something else is asked for.
+static void turn(Motor &motor, int32_t speed) {
+  const int8_t result = motor.setSpeed(controlFor(speed), intervalFor(speed), 0);
   if (result == MOTOR_ERROR_TOO_FAST) {
     Serial.print(F("too fast: at most "));
     Serial.println(F_CPU / MOTOR_MIN_TOP);
-  } else if (result == MOTOR_ERROR_RUNNING) {
-    Serial.println(F("not while it runs"));
-  } else {
-    Serial.println(result ? F("refused") : F("ok"));
+    return;
   }
+  if (result == 0) motor.interval = intervalFor(speed);
+  answer(result);
 }
 
-// Says whether a motor runs, and where it is.
+static void stop(const Motor &motor) {
+  motor.setSpeed(0, 0, 0);
+}
+
 static void printStatus(const Motor &motor) {
-  const bool rests = motor.readStatus() & MOTOR_STAT_REACHED;
-  Serial.print(motor.name);
-  Serial.print(rests ? F(" at rest, at step ") : F(" running, at step "));
-  Serial.println(motor.readPosition());
+  printPosition(motor.name, !(motor.readStatus() & MOTOR_STAT_REACHED), motor.readPosition());
 }
 
-// Does what the words behind the name of a motor say.
+// Does what the words say.
 static void obey(Motor &motor, const char *word, const char *rest) {
   int32_t number = 0;
-  const bool numbered = readNumber(rest, number);
+  const bool numbered = readNumber(rest, number) && number != 0;
   if (is(word, F("speed")) && numbered) {
-    const int8_t result = motor.setSpeed(controlFor(number), intervalFor(number), 0);
-    if (result == 0) motor.interval = intervalFor(number);
-    answer(result);
+    turn(motor, number);
   } else if (is(word, F("steps")) && numbered) {
     answer(motor.setSpeed(controlFor(number), motor.interval, magnitude(number)));
   } else if (is(word, F("speed")) || is(word, F("steps"))) {
     Serial.println(F("that needs a number, and not 0"));
-  } else if (is(word, F("ramp")) && motor.ramp) {
-    answer(motor.ramp());
   } else if (is(word, F("stop"))) {
-    answer(motor.setSpeed(0, 0, 0));
-  } else if (is(word, F("hold")) && motor.hold) {
+    stop(motor);
+    answer(0);
+  } else if (is(word, F("hold"))) {
     answer(motor.hold());
-  } else if (is(word, F("release")) && motor.release) {
+  } else if (is(word, F("release"))) {
     answer(motor.release());
   } else if (is(word, F("status"))) {
     printStatus(motor);
   } else {
-    Serial.println(F("what? type help"));
+    ask();
   }
 }
 
 // Stops every motor.
 static void stopAll() {
-  for (Motor &motor : motors) motor.setSpeed(0, 0, 0);
+  for (Motor &motor : motors) stop(motor);
+}
+
+// Says how the next motor is.
+static void printNextStatus() {
+  switch (shown++) {
+    case 0: return printStatus(motors[0]);
+    case 1: return printStatus(motors[1]);
+  }
 }
 
 // Does what the line says.
@@ -173,7 +191,7 @@ static void obeyLine() {
   } else if (is(first, F("help")) && !word) {
     helpLeft = kHelp;
   } else {
-    Serial.println(F("what? type help"));
+    ask();
   }
 }
 
@@ -181,8 +199,10 @@ void setup() {
   Serial.begin(115200);
   xShieldInit();
   yShieldInit();
-  stopAll();  // from here on each status says that the motor is at rest
-  for (Motor &motor : motors) motor.interval = motorTimerCalcPerSecond(200);
+  for (Motor &motor : motors) {
+    stop(motor);  // from here on its status says that it is at rest
+    motor.interval = motorTimerCalcPerSecond(200);
+  }
   Serial.println(F("type help"));
 }
 
@@ -191,7 +211,7 @@ void loop() {
   if (helpLeft) {
     printHelpLine();
   } else if (shown < kMotors) {
-    printStatus(motors[shown++]);
+    printNextStatus();
   } else if (readLine()) {
     obeyLine();
   }

@@ -1,6 +1,6 @@
 // motor by hand: open the Serial Monitor at 115200 baud, line ending "Newline", and type help.
 //
-// The motor turns while the sketch reads and answers; nothing in it waits.
+// The sketch reads and answers while they move; nothing in it waits.
 
 #include <NanoMotor.h>
 
@@ -12,11 +12,26 @@ static const char kHelp[] PROGMEM =
     "release      coils off, while it stands\n"
     "status       does it run, and where is it\n";
 
+// What can be asked of a motor.
+struct Motor {
+  const char *name;
+  uint32_t interval;  // I/O clocks between two steps of the next motion
+  int8_t (*setSpeed)(uint8_t control, uint32_t interval, uint32_t limit);
+  uint8_t (*readStatus)();
+  int32_t (*readPosition)();
+  int8_t (*hold)();
+  int8_t (*release)();
+};
+
+static Motor motors[] = {
+    {"motor", 0,
+     motorSetSpeed, motorReadStatus, motorReadPosition, motorHold, motorRelease},
+};
+
 constexpr int kRoom = 62;  // no line that is printed is longer; the core has room for more
 
 static char line[64];                   // what was typed; more than fits is cut off
 static const char *helpLeft = nullptr;  // what of the help is still to be printed
-static uint32_t interval;               // I/O clocks between two steps of the next motion
 
 // Prints the next line of the help; behind the last one there is none.
 static void printHelpLine() {
@@ -48,12 +63,33 @@ static bool is(const char *word, const __FlashStringHelper *known) {
   return strcmp_P(word, reinterpret_cast<const char *>(known)) == 0;
 }
 
-// Reads a whole number that is not 0; tells whether there is one and nothing else.
+// Reads a whole number; tells whether there is one and nothing else.
 static bool readNumber(const char *text, int32_t &number) {
   if (!text) return false;
   char *end;
   number = strtol(text, &end, 10);
-  return end != text && *end == '\0' && number != 0;
+  return end != text && *end == '\0';
+}
+
+// Says what the library answered.
+static void answer(int8_t result) {
+  if (result == MOTOR_ERROR_RUNNING) {
+    Serial.println(F("not while it runs"));
+    return;
+  }
+  Serial.println(result ? F("refused") : F("ok"));
+}
+
+// Says what was not understood.
+static void ask() {
+  Serial.println(F("what? type help"));
+}
+
+// Says where a motor is, and whether it moves.
+static void printPosition(const char *name, bool runs, int32_t position) {
+  Serial.print(name);
+  Serial.print(runs ? F(" running, at step ") : F(" at rest, at step "));
+  Serial.println(position);
 }
 
 // Without its sign.
@@ -72,70 +108,69 @@ static uint32_t intervalFor(int32_t speed) {
   return magnitude(speed) > 65535 ? 1 : motorTimerCalcPerSecond(magnitude(speed));
 }
 
-// Says what the library answered.
-static void answer(int8_t result) {
+// Turns at that speed until something else is asked for.
+static void turn(Motor &motor, int32_t speed) {
+  const int8_t result = motor.setSpeed(controlFor(speed), intervalFor(speed), 0);
   if (result == MOTOR_ERROR_TOO_FAST) {
     Serial.print(F("too fast: at most "));
     Serial.println(F_CPU / MOTOR_MIN_TOP);
-  } else if (result == MOTOR_ERROR_RUNNING) {
-    Serial.println(F("not while it runs"));
-  } else {
-    Serial.println(result ? F("refused") : F("ok"));
+    return;
   }
+  if (result == 0) motor.interval = intervalFor(speed);
+  answer(result);
 }
 
-// Turns at that speed until something else is asked for.
-static int8_t turn(int32_t speed) {
-  const int8_t result = motorSetSpeed(controlFor(speed), intervalFor(speed));
-  if (result == 0) interval = intervalFor(speed);
-  return result;
+static void stop(const Motor &motor) {
+  motor.setSpeed(0, 0, 0);
 }
 
-// Makes so many steps.
-static int8_t go(int32_t steps) {
-  return motorSetSpeed(controlFor(steps), interval, magnitude(steps));
+static void printStatus(const Motor &motor) {
+  printPosition(motor.name, !(motor.readStatus() & MOTOR_STAT_REACHED), motor.readPosition());
 }
 
-// Says whether the motor runs, and where it is.
-static void printStatus() {
-  const bool rests = motorReadStatus() & MOTOR_STAT_REACHED;
-  Serial.print(rests ? F("at rest, at step ") : F("running, at step "));
-  Serial.println(motorReadPosition());
-}
-
-// Does what the line says.
-static void obey() {
-  const char *word = strtok(line, " ");
-  const char *rest = strtok(nullptr, "");
+// Does what the words say.
+static void obey(Motor &motor, const char *word, const char *rest) {
   int32_t number = 0;
-  const bool numbered = readNumber(rest, number);
-  if (!word) return;
+  const bool numbered = readNumber(rest, number) && number != 0;
   if (is(word, F("speed")) && numbered) {
-    answer(turn(number));
+    turn(motor, number);
   } else if (is(word, F("steps")) && numbered) {
-    answer(go(number));
+    answer(motor.setSpeed(controlFor(number), motor.interval, magnitude(number)));
   } else if (is(word, F("speed")) || is(word, F("steps"))) {
     Serial.println(F("that needs a number, and not 0"));
   } else if (is(word, F("stop"))) {
-    answer(motorSetSpeed());
+    stop(motor);
+    answer(0);
   } else if (is(word, F("hold"))) {
-    answer(motorHold());
+    answer(motor.hold());
   } else if (is(word, F("release"))) {
-    answer(motorRelease());
+    answer(motor.release());
   } else if (is(word, F("status"))) {
-    printStatus();
-  } else if (is(word, F("help"))) {
+    printStatus(motor);
+  } else {
+    ask();
+  }
+}
+
+// Does what the line says.
+static void obeyLine() {
+  const char *word = strtok(line, " ");
+  const char *rest = strtok(nullptr, "");
+  if (!word) return;
+  if (is(word, F("help"))) {
     helpLeft = kHelp;
   } else {
-    Serial.println(F("what? type help"));
+    obey(motors[0], word, rest);
   }
 }
 
 void setup() {
   Serial.begin(115200);
   motorShieldInit();
-  motorSetSpeed();  // stopped: from here on its status says that it is at rest
-  interval = motorTimerCalcPerSecond(200);
+  for (Motor &motor : motors) {
+    stop(motor);  // from here on its status says that it is at rest
+    motor.interval = motorTimerCalcPerSecond(200);
+  }
   Serial.println(F("type help"));
 }
 
@@ -144,6 +179,6 @@ void loop() {
   if (helpLeft) {
     printHelpLine();
   } else if (readLine()) {
-    obey();
+    obeyLine();
   }
 }
