@@ -119,7 +119,8 @@ def test_every_kind_declares_the_points_that_it_needs() -> None:
         *(name for row in needs.OF_KERNEL.values() for name in row),
     }
 
-    forms = {"wide-compare", "ladder-compare"}  # compare on a 16-bit timer, the second with ramps
+    # Compare on a 16-bit timer: with periods of minutes, with ramps.
+    forms = {"wide-compare", "long-compare", "ladder-compare"}
     assert set(needs.OF_TIMING) == kinds | forms
     assert set(needs.OF_KERNEL) == {Toggle.kind, Ring.kind, Pulse.kind}
     assert set(needs.OF_CHIP) == {board.mcu.name for board in boards()}

@@ -26,4 +26,5 @@ def plan(spec: Constant, motor: Motor, _f_cpu_hz: int, _faults: Faults) -> Motio
         masked_cycles=285 + (_TIMED_CALL_CYCLES if timed else 0),
         can_go_on=not timed,
         setting_cycles=24,
+        needs_steps=timed,
     )
