@@ -3,7 +3,7 @@ What datasheets and boards say: chips, ports, timers, vectors, pins, and other l
 """
 
 from stepgen.devices.catalogue import boards, find_board
-from stepgen.devices.drivers import DRIVERS, PulseTimes, StepDriver
+from stepgen.devices.drivers import DRIVERS, UNFIT_DRIVERS, PulseTimes, StepDriver
 from stepgen.devices.interrupts import (
     CORE,
     INTERRUPTS,
@@ -40,6 +40,7 @@ __all__ = [
     "SHIELDS",
     "SKETCH_LIBRARIES",
     "UNBOUND",
+    "UNFIT_DRIVERS",
     "Board",
     "LibraryClaims",
     "LibraryInterrupt",

@@ -1,8 +1,7 @@
 """
 Driver chips with STEP and DIR inputs: what their datasheets ask of the pulses.
 
-A figure that could not be confirmed is a conservative one, and its comment says so. Not here: the
-L6470 in step-clock mode, which has STEP (STCK) but no DIR: its direction is a command over SPI.
+A figure that could not be confirmed is a conservative one, and its comment says so.
 """
 
 from collections.abc import Mapping
@@ -82,3 +81,15 @@ DRIVERS: Mapping[str, StepDriver] = MappingProxyType(
     }
 )
 """The drivers by the name that a spec gives them."""
+
+UNFIT_DRIVERS: Mapping[str, str] = MappingProxyType(
+    {
+        # ST L6470 datasheet, "Step-clock mode" and "StepClock (DIR)": STCK makes the microsteps,
+        # and the direction is the parameter of that command.
+        "l6470": (
+            "the L6470 has no DIR: in its step-clock mode the direction is a command over SPI, "
+            "which a library of stepgen does not send"
+        )
+    }
+)
+"""Why a driver that people may ask for cannot be one of them, by its name."""

@@ -69,6 +69,7 @@ class MotorView:
     init: str
     axis: AxisView | None
     summary: str
+    period_type: str
     wiring: tuple[str, ...]
     init_comment: tuple[str, ...]
     start_comment: tuple[str, ...]
@@ -126,6 +127,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         init=init_name(motor),
         axis=axis_view(motor, need, plan),
         summary=summary(motor),
+        period_type=period_type(plan),
         wiring=(*wiring(motor, board), *comment_lines(sharing_note(motor, need, plan))),
         init_comment=init_comment(motor),
         start_comment=start_comment(motor, need, board.f_cpu_hz),
@@ -171,6 +173,20 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         turn_text="One turn" if motor.steps_per_turn else "200 steps",
         loop_text=_loop_text(motor),
     )
+
+
+def has_long_periods(plan: Plan) -> bool:
+    """
+    Return whether steps of *plan* can be minutes apart; then they can in all of its motors.
+    """
+    return any(motor.timing.module == "long_compare" for motor in plan.motors)
+
+
+def period_type(plan: Plan) -> str:
+    """
+    Return the type of a virtual timer TOP: 32 bits are 268 s at 16 MHz.
+    """
+    return "uint64_t" if has_long_periods(plan) else "uint32_t"
 
 
 def module_name(kind: str) -> str:

@@ -16,7 +16,7 @@ from stepgen.library.api_view import (
 )
 from stepgen.library.examples_view import ExamplesView, examples_view
 from stepgen.library.hot_view import CLOCK_BIT, THINK_BIT
-from stepgen.library.motor_view import MotorView, Named, motor_view
+from stepgen.library.motor_view import MotorView, Named, has_long_periods, motor_view, period_type
 from stepgen.library.prose import calls_comment, paragraph, takes, title
 from stepgen.library.rates_view import HeldRow, held_rows, lateness, speeds
 from stepgen.library.sharing import needs_comment
@@ -66,6 +66,7 @@ class LibraryView:
     codes: tuple[Definition, ...]
     results: str
     constants: tuple[Named, ...]
+    period_type: str
     calls_comment: tuple[str, ...]
     motion_names: tuple[str, ...]
     motion_structs: tuple[MotionStruct, ...]
@@ -121,6 +122,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         codes=codes(plan),
         results=_results(plan),
         constants=_constants(plan),
+        period_type=period_type(plan),
         calls_comment=calls_comment(plan),
         motion_names=tuple(sorted({motor.motion_name for motor in motors})),
         motion_structs=_motion_structs(motors),
@@ -184,12 +186,15 @@ def _claims(plan: Plan) -> tuple[Named, ...]:
 def _constants(plan: Plan) -> tuple[Named, ...]:
     f_cpu = plan.board.f_cpu_hz
     shortest, longest = plan.minimum_period_cycles, plan.largest_period_cycles
+    has_long = has_long_periods(plan)
+    suffix = "ULL" if has_long else "UL"
+    formula = f"{longest // f_cpu} * {f_cpu}" if has_long else "65535 * 1024"
     return (
-        Named("MOTOR_MIN_TOP", f"{shortest}UL", f"{f_cpu // shortest} steps/s"),
+        Named("MOTOR_MIN_TOP", f"{shortest}{suffix}", f"{f_cpu // shortest} steps/s"),
         Named(
             "MOTOR_MAX_TOP",
-            f"{longest}UL",
-            f"65535 * 1024: a step each {longest / f_cpu:.2f} s",
+            f"{longest}{suffix}",
+            f"{formula}: a step each {longest / f_cpu:.2f} s",
         ),
     )
 

@@ -45,6 +45,7 @@ class Motion:
         queue: How many moves can wait.
         cruise_interval_256: The interval at its cruise speed, in 1/256 clocks.
         wish_field: Where in the motor's spec stands how fast it will be at most.
+        needs_steps: Whether its clocks must be looked at with steps, each 16 s at least.
     """
 
     kind: str
@@ -64,6 +65,7 @@ class Motion:
     queue: int = 0
     cruise_interval_256: int = 0
     wish_field: tuple[str, ...] = ("max_steps_per_second",)
+    needs_steps: bool = True
 
 
 @dataclass(frozen=True)

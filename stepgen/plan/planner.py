@@ -28,6 +28,7 @@ from stepgen.plan.limits import (
     rate_limit,
     situations,
 )
+from stepgen.plan.long_periods import report_impatience, report_unlike
 from stepgen.plan.model import Left, MotorPlan, Plan, RateLimit, TimerPlan
 from stepgen.plan.motions import plan_motion
 from stepgen.plan.timings import plan_gate, plan_timing, way_out
@@ -61,6 +62,7 @@ def make_plan(loaded: LoadedSpec) -> Plan:
     ]
     faults.raise_if_any()
     planned = tuple(motor for motor in motors if motor)
+    report_unlike(planned, faults)
     masked = max(motor.masked_bound_cycles for motor in planned)
     alone = Chip(board, planned, (), masked)
     rates = _rates(alone, uses.values(), faults)
@@ -240,6 +242,7 @@ def _plan_motor(
         )
     motion = plan_motion(motor, _scale(motor, drive), board.f_cpu_hz, faults)
     if timing and motion:
+        report_impatience(timing, motion, faults.at("timing"))
         timing = _form(timing, motion, faults.at("timing"))
     if not (drive and timing and kernel and motion):
         return None

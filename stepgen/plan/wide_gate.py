@@ -20,12 +20,12 @@ _HANDLER_CYCLES = 130  # to move the compare register, to look if that was too l
 _MASKED_CYCLES = 30  # to make laps of an interval
 
 
-def wide_gate(timing: TimerPlan, motion: Motion, storage: Storage) -> Gate:
+def wide_gate(timing: TimerPlan, motion: Motion, storage: Storage, lap_bytes: int = 2) -> Gate:
     """
-    Return the fragments of the compare channel of *timing*.
+    Return the fragments of the compare channel of *timing*, whose counts of laps have *lap_bytes*.
     """
     gate = Gate(
-        boundary=laps(),
+        boundary=laps(lap_bytes),
         advance=_advance(),
         check=(*passed(), Instruction("pop   r25", 2), Instruction("brpl  13f", 1)),
         handler_cycles=_HANDLER_CYCLES,
@@ -36,11 +36,12 @@ def wide_gate(timing: TimerPlan, motion: Motion, storage: Storage) -> Gate:
     )
     if not motion.can_go_on:
         return gate
+    nolaps = _nolaps(lap_bytes)
     return replace(
         gate,
-        go_on=(*passed(), Instruction("brpl  16f", 1), *_nolaps(), *_next_run(storage)),
+        go_on=(*passed(), Instruction("brpl  16f", 1), *nolaps, *_next_run(storage)),
         out=(Instruction("pop   r25", 2, label="16"),),
-        look=_look(storage),
+        look=_look(storage, nolaps),
         fields=(
             *gate.fields,
             ("nextLaps", "next.laps"),
@@ -67,15 +68,21 @@ def _bytes(name: str, register: Register) -> tuple[tuple[str, Register], ...]:
     return (f"{name}Low", low), (f"{name}High", high)
 
 
-def laps() -> tuple[Instruction, ...]:
+def laps(size: int = 2) -> tuple[Instruction, ...]:
     """
-    Return what keeps an interrupt that ends a lap away from the step.
+    Return what keeps an interrupt that ends a lap away from the step; their count has *size* bytes.
     """
+    middle = (
+        Instruction("lds   r24, %[laps] + 1", 2),
+        Instruction("tst   r24", 1),
+        Instruction("brne  17f", 1),
+    )
     return (
         Instruction("lds   r24, %[laps]", 2, "laps of a long interval that are left?"),
         Instruction("tst   r24", 1),
         Instruction("brne  17f", 1),
-        Instruction("lds   r24, %[laps] + 1", 2),
+        *(middle if size > 2 else ()),  # noqa: PLR2004 - what is between the first and the last
+        Instruction(f"lds   r24, %[laps] + {size - 1}", 2),
         Instruction("tst   r24", 1),
         Instruction("breq  .+2", 2),
         Instruction("rjmp  2f", 0, "one less, and no step", label="17"),
@@ -115,14 +122,20 @@ def passed() -> tuple[Instruction, ...]:
     )
 
 
-def _nolaps() -> tuple[Instruction, ...]:
+def _nolaps(size: int) -> tuple[Instruction, ...]:
     """
     Return what leads to the handler where the interval that has begun, or the next one, has laps.
     """
+    more = (
+        (
+            Instruction(f"lds   r25, %[nextLaps] + {byte}", 2),
+            Instruction("or    r24, r25", 1),
+        )
+        for byte in range(1, size)
+    )
     return (
         Instruction("lds   r24, %[nextLaps]", 2, "no laps to count?"),
-        Instruction("lds   r25, %[nextLaps] + 1", 2),
-        Instruction("or    r24, r25", 1),
+        *(line for lines in more for line in lines),
         Instruction("brne  16f", 1),
     )
 
@@ -145,7 +158,7 @@ def _next_run(storage: Storage) -> tuple[Instruction, ...]:
     )
 
 
-def _look(storage: Storage) -> tuple[Instruction, ...]:
+def _look(storage: Storage, nolaps: tuple[Instruction, ...]) -> tuple[Instruction, ...]:
     """
     Return the look at the clock: as long as the end is not there, one step more and no handler.
     """
@@ -160,7 +173,7 @@ def _look(storage: Storage) -> tuple[Instruction, ...]:
         Instruction("lds   r25, %[endMillis] + 1", 2),
         Instruction("sbc   r24, r25", 1),
         Instruction("brpl  16b", 1, "it is over"),
-        *(replace(one, text=one.text.replace("16f", "16b")) for one in _nolaps()),
+        *(replace(one, text=one.text.replace("16f", "16b")) for one in nolaps),
         Instruction("lds   r24, %[rest]", 2, "one step less"),
         Instruction("lds   r25, %[rest] + 1", 2),
         Instruction("sbiw  r24, 1", 2),

@@ -24,6 +24,7 @@ class MotorFacts:
         phases: The coil table, phase 0 first.
         coils_off: The pattern without current.
         minimum_cycles: The smallest virtual value that is accepted, 4 to 65535 * 1024.
+        slowest_cycles: The largest virtual value that is accepted.
         at_rest: Whether the coils stay on when the motor stops.
         motion: Whether its library has update events.
         shares_enables: Whether the wires that switch its coils off are another motor's too.
@@ -56,6 +57,7 @@ class MotorFacts:
     ladder: Ladder | None = None
     cruise_256: int = 0
     queue: int = 0
+    slowest_cycles: int = SLOWEST_CYCLES
 
     def __post_init__(self) -> None:
         if not FASTEST_CYCLES <= self.minimum_cycles <= SLOWEST_CYCLES:

@@ -14,6 +14,7 @@ from stepgen.reference.timer import COUNTER_STATES, PRESCALERS
 
 UINT16_STATES = 1 << 16
 UINT32_STATES = 1 << 32
+UINT64_STATES = 1 << 64
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,8 @@ class SetSpeed:
     Args:
         cycle: The commit; a step interrupt that is served later belongs to this call.
         control: Control bits, 0 to 255.
-        virtual_cycles: I/O clocks between two steps, 32 bits; 0 stops.
+        virtual_cycles: I/O clocks between two steps, 32 bits, or 64 where they can be minutes; 0
+            stops.
         limit: Steps, or milliseconds with ENDPOINT_MILLIS, 32 bits; 0 = endless.
         modification: What the first update event changes the virtual value by, 32 bits.
         update_interval: Milliseconds, or steps with UPDATE_STEPS, between two update events,
@@ -42,7 +44,7 @@ class SetSpeed:
 
     def __post_init__(self) -> None:
         _need("control", self.control, ALL_CONTROL_BITS + 1)
-        _need("virtual_cycles", self.virtual_cycles, UINT32_STATES)
+        _need("virtual_cycles", self.virtual_cycles, UINT64_STATES)
         _need("limit", self.limit, UINT32_STATES)
         _need("modification", self.modification, UINT32_STATES)
         _need("update_interval", self.update_interval, UINT16_STATES)

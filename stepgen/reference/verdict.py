@@ -5,7 +5,6 @@ The verdict on a call, before it does anything (systems/1-motor-driver.md, Contr
 from stepgen.reference.contract import CONTROL_BITS, Code, Control, Status
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.stimuli import SetSpeed
-from stepgen.reference.timer import SLOWEST_CYCLES
 
 
 def stops(call: SetSpeed) -> bool:
@@ -25,7 +24,7 @@ def verdict(call: SetSpeed, facts: MotorFacts) -> Code:
         return Code.CONTROL
     if call.virtual_cycles < facts.minimum_cycles:
         return Code.TOO_FAST
-    if call.virtual_cycles > SLOWEST_CYCLES:
+    if call.virtual_cycles > facts.slowest_cycles:
         return Code.TOO_SLOW
     return Code.FINE if _has_whole_updates(call) else Code.UPDATE
 

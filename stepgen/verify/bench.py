@@ -14,9 +14,9 @@ from stepgen.plan.model import MotorPlan, Plan, TimerPlan
 from stepgen.verify.events import Events
 from stepgen.verify.simulators import SIMAVR, Simulator
 
-_MAILBOX = Struct("<BBBBIIIHHHbBiHBBBiiiB")
+_MAILBOX = Struct("<BBBBIIIHHHbBiHBBBiiiBI")
 _DELAY = Struct("<H")
-_RESULT, _WITHIN, _STEPS = 10, 15, 17  # their places in the mailbox
+_RESULT, _WITHIN, _STEPS, _TOP_HIGH = 10, 15, 17, 21  # their places in the mailbox
 _LOOP_OFFSET = 2
 _DELAY_OFFSET = 20
 _NO_CALL = 11  # the sketch goes through all of a call, but calls nothing
@@ -279,7 +279,7 @@ class Bench:
 
     def _answer(self, call: Call, begin: int, end: int) -> Answer:
         seen = _MAILBOX.unpack(self.machine.read_ram(self._mailbox, _MAILBOX.size))
-        return Answer(call, begin, end, *seen[_RESULT:_WITHIN], *seen[_STEPS + 1 :])
+        return Answer(call, begin, end, *seen[_RESULT:_WITHIN], *seen[_STEPS + 1 : _TOP_HIGH])
 
     def come_back(self, limit_cycles: int) -> bool:
         """
@@ -331,11 +331,12 @@ def mail(call: Call, loop: Loop) -> bytes:
     Return what the mailbox holds for *call*, with an empty answer, and *loop* between calls.
     """
     update = (call.modification, call.interval, call.count)
-    arguments = (call.kind, call.motor, loop, call.control, call.top, call.limit, *update)
+    top_high, top = divmod(call.top, 1 << 32)
+    arguments = (call.kind, call.motor, loop, call.control, top, call.limit, *update)
     within = 0 if call.context is Context.LOOP else call.kind
     answer = (0,) * (_WITHIN - _RESULT)
     more = (within, call.context, call.steps)
-    return _MAILBOX.pack(*arguments, 0, *answer, *more, 0, 0, 0)
+    return _MAILBOX.pack(*arguments, 0, *answer, *more, 0, 0, 0, top_high)
 
 
 def watched_registers(plan: Plan) -> list[int]:

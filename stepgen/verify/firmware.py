@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stepgen.devices import Mcu, Port
+from stepgen.library.motor_view import has_long_periods
 from stepgen.library.render import environment, render_library, spec_hash
 from stepgen.library.text import hexadecimal
 from stepgen.library.view import make_view
@@ -44,6 +45,7 @@ class BenchView:
     inits: tuple[str, ...]
     axes: bool
     limits: bool
+    long_periods: bool
 
 
 @dataclass(frozen=True)
@@ -148,6 +150,7 @@ def _bench_view(plan: Plan) -> BenchView:
         inits=tuple(m.name + ("Init" if is_axis(m) else "ShieldInit") for m in plan.motors),
         axes=len(arguments) < len(plan.motors),
         limits=bool(arguments),
+        long_periods=has_long_periods(plan),
         free_bits=tuple(bits),
         free_groups=tuple(_free(mcu.port(letter), mask) for letter, mask in masks.items() if mask),
         free_pins=tuple(pins),

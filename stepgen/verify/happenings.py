@@ -9,6 +9,7 @@ from enum import IntEnum
 from stepgen.devices import Board
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.stimuli import (
+    UINT32_STATES,
     AxisStimulus,
     CallBack,
     Callbacks,
@@ -208,7 +209,7 @@ def _stimulus(answer: Answer, cycle: int) -> Stimulus | AxisStimulus | None:
         CallKind.RUN_BACKWARD: RunOn(cycle, -1),
         CallKind.STOP: Stop(cycle),
         CallKind.HALT: Halt(cycle),
-        CallKind.SET_PACE: SetPace(cycle, call.top),
+        CallKind.SET_PACE: SetPace(cycle, call.top % UINT32_STATES),
         CallKind.QUEUE_MOVE_TO: QueueMoveTo(cycle, call.steps),
         CallKind.SET_POSITION: SetPosition(cycle, call.steps),
     }

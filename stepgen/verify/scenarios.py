@@ -86,7 +86,7 @@ def _standard(plan: Plan, fastest: int) -> Iterator[tuple[str, Loop, list[Action
     yield (
         "the slowest rate",
         Loop.SLEEP,
-        [_speed(motors[0], DRIVE, slowest, 2), Wait(4 * slowest), _read(motors[0])],
+        [_speed(motors[0], DRIVE, slowest, 2), Wait(3 * slowest + slowest // 8), _read(motors[0])],
     )
     yield "single steps both ways", Loop.BUSY, list(_single_steps(motors, fastest))
     yield "restart while running", Loop.BUSY, list(_restarts(motors, fastest))

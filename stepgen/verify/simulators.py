@@ -160,6 +160,7 @@ SIMAVR = Simulator(
     corrected=frozenset(
         {"double-buffer", "slow-step", "prescaler-phase", "count-kept", "count-zero-loads-nothing"}
         | {"late-compare-shows", "fast-pwm-icr-period", "ctc-icr-period", "ctc-wrap"}
+        | {"compare-pins", "compare-pin-edges", "compare-force"}
         | {
             "pin-writes",
             "pin-writes-1280",

@@ -14,6 +14,7 @@ from stepgen.devices import PortBit, Register, Timer
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.reference.contract import MotionKind, TimingKind
 from stepgen.reference.facts import MotorFacts
+from stepgen.reference.timer import SLOWEST_CYCLES
 from stepgen.spec import LoadedSpec, Motor
 from stepgen.verify.bench import compare_channel
 from stepgen.verify.drives import DriveFacts, drive_facts
@@ -180,6 +181,7 @@ def _facts(
 ) -> MotorFacts:
     motion_spec: Any = motor.motion
     motion: MotionKind = motion_spec.kind
+    long_period: int | None = getattr(motor.timing, "longest_period_s", None)
     return MotorFacts(
         phases=drive.phases,
         coils_off=drive.coils_off,
@@ -192,4 +194,5 @@ def _facts(
         command_timeout_millis=motor.command_timeout_ms,
         wake_cycles=drive.pulse.wake_cycles(timing) if drive.pulse else 0,
         sees_passed=timing == "wide-compare",
+        slowest_cycles=max(SLOWEST_CYCLES, (long_period or 0) * plan.board.f_cpu_hz),
     )

@@ -21,6 +21,7 @@ from stepgen.verify.runner import Outcome, is_asleep, run_scenario
 from stepgen.verify.scenarios import Scenario, standard_scenarios
 from stepgen.verify.sharing_scenarios import sharing_scenarios
 from stepgen.verify.simulators import SIMAVR, Simulator
+from stepgen.verify.slow_scenarios import slow_scenarios
 from stepgen.verify.timeout_scenarios import timeout_scenarios
 from stepgen.verify.toolchain import Compiler
 from stepgen.verify.update_scenarios import update_scenarios
@@ -100,6 +101,7 @@ def _scenarios(plan: Plan) -> list[tuple[Scenario, bool]]:
         update_scenarios,
         timeout_scenarios,
         sharing_scenarios,
+        slow_scenarios,
         axis_scenarios,
     )
     usual = [(scenario, False) for kind in kinds for scenario in kind(plan)]

@@ -9,6 +9,7 @@ that it matches *ahead* cycles after the write. Up to v = 32 767 that match is t
 
 import pytest
 
+from stepgen.reference.contract import Code
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.integer import MotorModel
 from stepgen.reference.sequences import coils_off, phases
@@ -22,6 +23,7 @@ FACTS = MotorFacts(
     "hold",
     timing="wide-compare",
     sees_passed=True,
+    slowest_cycles=4_800_000_000,
 )
 
 
@@ -49,6 +51,9 @@ def _steps(stimuli: list[Stimulus], until_cycle: int) -> list[int]:
         # The slowest, 65535 * 1024 = 67107840 = 4095 * 16384 + 15360: first 31744, 4094 laps.
         # 1020 + 31734 + 4094 * 16384 = 67108850.
         (67_107_840, 31_734, [67_108_850]),
+        # A step each 300 s: 4800000000 = 292968 * 16384 + 12288: first 28672, then 292967 laps.
+        # 1020 + 28662 + 292967 * 16384 = 4800001010; + 4800000000.
+        (4_800_000_000, 28_662, [4_800_001_010, 9_600_001_010]),
     ],
 )
 def test_steps_come_with_whole_cycles(
@@ -131,10 +136,19 @@ def test_the_first_match_of_an_interval_is_less_than_half_round(interval: int, f
     assert first_match_cycles(interval) == first
 
 
-@pytest.mark.parametrize("virtual_cycles", [0, 65_535 * 1024 + 1])
-def test_a_period_out_of_range_has_no_setting(virtual_cycles: int) -> None:
+def test_a_period_of_nothing_has_no_setting() -> None:
     """
-    At least one cycle, and at most what fast PWM can do.
+    At least one cycle; how many at most, the spec says.
     """
-    with pytest.raises(ValueError, match="not within 1 to 67107840"):
-        unscaled_setting(virtual_cycles)
+    with pytest.raises(ValueError, match="0 cycles are less than 1"):
+        unscaled_setting(0)
+
+
+@pytest.mark.parametrize(
+    ("virtual_cycles", "code"), [(4_800_000_000, Code.FINE), (4_800_000_001, Code.TOO_SLOW)]
+)
+def test_a_period_is_as_long_as_the_spec_says(virtual_cycles: int, code: Code) -> None:
+    """
+    300 s are 4.8e9 clocks, more than 32 bits hold; one clock more is refused.
+    """
+    assert MotorModel(FACTS).apply(SetSpeed(1_000, 0x80, virtual_cycles)) == code

@@ -26,5 +26,6 @@ KINDS = (
     "uno_compare_two",
     "uno_compare_28byj48",
     "mega_compare_three",
+    "uno_slow",
     "uno_trapezoid",
 )

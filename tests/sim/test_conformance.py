@@ -29,7 +29,7 @@ THIRD = pytest.param(YASIMAVR, marks=pytest.mark.yasimavr)
 # capture flag in mode 12; TEMP and ICR1 are no registers of their own; no transmit buffer; no USB.
 # Of yasimavr 0.1.6: no compare pins. Both load the buffer at TCNT1 = 0.
 WRONG = {
-    "simavr": {"compare-pins"},
+    "simavr": set(),
     "avr8js": {
         *("ctc-icr-period", "count-zero-loads-nothing"),
         *("temp-register", "icr-read-only", "uart-buffer", "uart-status"),
@@ -37,7 +37,7 @@ WRONG = {
     },
     "yasimavr": {
         *("ctc-icr-period", "count-zero-loads-nothing", "icr-read-only"),
-        *("count-write-blocks", "compare-pins"),
+        *("count-write-blocks", "compare-pins", "compare-pin-edges", "compare-force"),
     },
 }
 # The same simulators without what stepgen corrects.
@@ -119,7 +119,8 @@ def test_every_kind_declares_the_points_that_it_needs() -> None:
         *(name for row in needs.OF_KERNEL.values() for name in row),
     }
 
-    forms = {"wide-compare", "ladder-compare"}  # compare on a 16-bit timer, the second with ramps
+    # Compare on a 16-bit timer: with periods of minutes, with ramps.
+    forms = {"wide-compare", "long-compare", "ladder-compare"}
     assert set(needs.OF_TIMING) == kinds | forms
     assert set(needs.OF_KERNEL) == {Toggle.kind, Ring.kind, Pulse.kind}
     assert set(needs.OF_CHIP) == {board.mcu.name for board in boards()}

@@ -26,6 +26,7 @@ CAMPAIGN_SEEDS = 30
 # longer than this. A motor whose period is not longer may lose a step by that, as the header says.
 CALL_WITHIN_CYCLES = 3_000
 LARGEST_32, LARGEST_16, LARGEST_INT32 = 0xFFFF_FFFF, 0xFFFF, 0x7FFF_FFFF
+LARGEST_64 = (1 << 64) - 1
 KINDS_OF_CALL = {
     CallKind.SET_SPEED: 50,
     CallKind.HOLD: 6,
@@ -131,7 +132,9 @@ class Arguments:
         slowest, beyond = self._plan.largest_period_cycles, self._plan.minimum_period_cycles - 1
         usual = int(2 ** self._random.uniform(12, 20))
         ends = (0, 1, beyond, fastest, fastest + 1, slowest, slowest + 1, LARGEST_32)
-        return self._random.choice([*ends, *([usual] * 8), 1 << 16, (1 << 16) - 1, 1 << 31])
+        longer = [1 << 32, LARGEST_64] if slowest > LARGEST_32 else []
+        powers = [1 << 16, (1 << 16) - 1, 1 << 31]
+        return self._random.choice([*ends, *([usual] * 8), *powers, *longer])
 
     def _long(self) -> int:
         any_size = self._random.getrandbits(self._random.randrange(1, 33))

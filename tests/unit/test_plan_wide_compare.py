@@ -83,6 +83,30 @@ def test_an_interval_is_exact_to_the_clock() -> None:
     assert wide_compare.choose_setting(1_000_003).period_cycles == 1_000_003
 
 
+def test_steps_can_be_minutes_apart(planned: Planner) -> None:
+    """
+    As many seconds as the spec says, with a step interrupt as long as without.
+    """
+    text = f"board: uno\nmotors:\n  m: {{drive: {STEP_DIR}, timing: {{kind: compare, timer: 1"
+    usual, slow = planned(text + "}}\n"), planned(text + ", longest_period_s: 300}}\n")
+
+    assert usual.largest_period_cycles == 65_535 * 1024
+    assert slow.largest_period_cycles == 300 * 16_000_000
+    assert slow.motors[0].hot_path.usual_cycles == usual.motors[0].hot_path.usual_cycles
+
+
+def test_a_short_longest_period_takes_nothing_away(planned: Planner) -> None:
+    """
+    5 s at 8 MHz are less than the 8.39 s that there are anyhow.
+    """
+    text = (
+        f"board: pro-mini-8mhz\nmotors:\n  m: {{drive: {STEP_DIR}, "
+        "timing: {kind: compare, timer: 1, longest_period_s: 5}}\n"
+    )
+
+    assert planned(text).largest_period_cycles == 65_535 * 1024
+
+
 def test_its_interrupt_comes_with_each_step_or_lap() -> None:
     """
     From 32 768 clocks on, laps of 16 384 make an interval.

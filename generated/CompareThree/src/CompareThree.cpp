@@ -387,20 +387,26 @@ INLINE bool xMillisOver() {
   return static_cast<int16_t>(millisCount() - xMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void xCountLap(uint8_t mode) {
+  auto &motion = xMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void xCountOn(uint8_t mode, bool lapOver) {
   auto &motion = xMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    xCountLap(mode);
   }
 }
 
@@ -837,20 +843,26 @@ INLINE bool yMillisOver() {
   return static_cast<int16_t>(millisCount() - yMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void yCountLap(uint8_t mode) {
+  auto &motion = yMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void yCountOn(uint8_t mode, bool lapOver) {
   auto &motion = yMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    yCountLap(mode);
   }
 }
 

@@ -289,20 +289,26 @@ INLINE bool motorMillisOver() {
   return static_cast<int16_t>(millisCount() - motorMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void motorCountLap(uint8_t mode) {
+  auto &motion = motorMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void motorCountOn(uint8_t mode, bool lapOver) {
   auto &motion = motorMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    motorCountLap(mode);
   }
 }
 

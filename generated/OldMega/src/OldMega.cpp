@@ -287,20 +287,26 @@ INLINE bool nearMillisOver() {
   return static_cast<int16_t>(millisCount() - nearMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void nearCountLap(uint8_t mode) {
+  auto &motion = nearMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void nearCountOn(uint8_t mode, bool lapOver) {
   auto &motion = nearMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    nearCountLap(mode);
   }
 }
 
@@ -652,20 +658,26 @@ INLINE bool farMillisOver() {
   return static_cast<int16_t>(millisCount() - farMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void farCountLap(uint8_t mode) {
+  auto &motion = farMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void farCountOn(uint8_t mode, bool lapOver) {
   auto &motion = farMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    farCountLap(mode);
   }
 }
 

@@ -295,20 +295,26 @@ INLINE bool panMillisOver() {
   return static_cast<int16_t>(millisCount() - panMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void panCountLap(uint8_t mode) {
+  auto &motion = panMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void panCountOn(uint8_t mode, bool lapOver) {
   auto &motion = panMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    panCountLap(mode);
   }
 }
 
@@ -655,20 +661,26 @@ INLINE bool tiltMillisOver() {
   return static_cast<int16_t>(millisCount() - tiltMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void tiltCountLap(uint8_t mode) {
+  auto &motion = tiltMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void tiltCountOn(uint8_t mode, bool lapOver) {
   auto &motion = tiltMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    tiltCountLap(mode);
   }
 }
 

@@ -297,20 +297,26 @@ INLINE bool lowerMillisOver() {
   return static_cast<int16_t>(millisCount() - lowerMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void lowerCountLap(uint8_t mode) {
+  auto &motion = lowerMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void lowerCountOn(uint8_t mode, bool lapOver) {
   auto &motion = lowerMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    lowerCountLap(mode);
   }
 }
 
@@ -658,20 +664,26 @@ INLINE bool upperMillisOver() {
   return static_cast<int16_t>(millisCount() - upperMotion.endMillis) >= 0;
 }
 
+// Counts a lap of a millisecond limit, of which one ends each 16 s.
+INLINE void upperCountLap(uint8_t mode) {
+  auto &motion = upperMotion;
+  motion.endMillis += 0x4000;
+  if (--motion.laps) return;
+  if (motion.lapsHigh) {
+    --motion.lapsHigh;
+  } else {
+    motion.mode = mode & ~kLaps;
+  }
+}
+
 // What a millisecond limit counts at a step: the borrow of *rest*, which will be one less, or else
-// a lap, of which one ends each 16 s. A lap that waits for the next step is early enough.
+// a lap. A lap that waits for the next step is early enough.
 INLINE void upperCountOn(uint8_t mode, bool lapOver) {
   auto &motion = upperMotion;
   if (motion.rest == 0) {
     --motion.restHigh;
   } else if (lapOver) {
-    motion.endMillis += 0x4000;
-    if (--motion.laps) return;
-    if (motion.lapsHigh) {
-      --motion.lapsHigh;
-    } else {
-      motion.mode = mode & ~kLaps;
-    }
+    upperCountLap(mode);
   }
 }
 

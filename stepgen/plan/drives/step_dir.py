@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from stepgen.devices import (
     DRIVERS,
     SHIELDS,
+    UNFIT_DRIVERS,
     Board,
     Pin,
     PulseTimes,
@@ -68,6 +69,12 @@ def _driver(spec: StepDir, faults: Faults) -> StepDriver | None:
     if spec.driver is None:
         return _NO_DRIVER
     driver = DRIVERS.get(spec.driver.lower())
+    unfit = UNFIT_DRIVERS.get(spec.driver.lower())
+    if unfit:
+        faults.at("driver").report(
+            f"{unfit}; take a driver with STEP and DIR, such as {next(iter(DRIVERS))}"
+        )
+        return None
     if driver is None:
         faults.at("driver").report(
             f"is no driver that stepgen knows; choose one of {', '.join(DRIVERS)}, or leave it out "

@@ -31,4 +31,5 @@ def plan(
         masked_cycles=285 + (_TIMED_CALL_CYCLES if timed else 0),
         can_go_on=not timed,
         setting_cycles=24,
+        needs_steps=timed,
     )

@@ -56,10 +56,16 @@ def plan(spec: Compare, board: Board, left: Left, faults: Faults) -> TimerPlan |
         wanted = next(iter((*free, *wide_compare.with_channels(board, left), *narrow)), None)
     timer = None if wanted is None else board.mcu.timer8(wanted)
     if timer is None:
-        return wide_compare.plan_wide(wanted, spec.channel, board, left, faults)
+        return wide_compare.plan_wide(spec, wanted, board, left, faults)
     if spec.channel not in {None, "A"}:
         faults.at("channel").report(
             f"timer {timer.number} makes the steps of one motor, with channel A; take `channel: A`"
+        )
+        return None
+    if spec.longest_period_s is not None:
+        faults.at("longest_period_s").report(
+            f"timer {timer.number} has 8 bits and a step in 4.19 s at least; take a 16-bit timer, "
+            "such as `timer: 1`"
         )
         return None
     return TimerPlan(

@@ -22,6 +22,7 @@ from stepgen.plan.instructions import Gate, Storage
 from stepgen.plan.isr import Motion
 from stepgen.plan.model import Cadence, Left, Setting, TimerPlan
 from stepgen.plan.wide_gate import wide_gate
+from stepgen.spec.timings.compare import Compare
 
 LAP_CYCLES = 16_384
 LONGEST_SINGLE_CYCLES = 32_767
@@ -45,10 +46,10 @@ def with_channels(board: Board, left: Left) -> Iterator[int]:
 
 
 def plan_wide(
-    wanted: int | None, channel: str | None, board: Board, left: Left, faults: Faults
+    spec: Compare, wanted: int | None, board: Board, left: Left, faults: Faults
 ) -> TimerPlan | None:
     """
-    Return the timer *wanted* with *channel*, or its first one that is *left*.
+    Return the timer *wanted* with the channel of *spec*, or its first one that is *left*.
 
     Returns None after reporting why it cannot be.
     """
@@ -68,7 +69,8 @@ def plan_wide(
         return None
     channels = timer.compare_channels
     taken = left.channels.get(timer.number, ())
-    chosen = channel or next((name for name in channels if name not in taken), next(iter(channels)))
+    wish: str | None = spec.channel
+    chosen = wish or next((name for name in channels if name not in taken), next(iter(channels)))
     if chosen not in channels:
         faults.at("channel").report(
             f"timer {timer.number} of the {board.title} has no channel {chosen}; take "
@@ -82,7 +84,7 @@ def plan_wide(
         event=f"compare match {chosen}",
         instant="the match",
         smallest_period_cycles=SMALLEST_PERIOD_CYCLES,
-        largest_period_cycles=LARGEST_PERIOD_CYCLES,
+        largest_period_cycles=_largest_period_cycles(spec, board),
         rule=(
             "A step that was already due when the one before was made is made at once and "
             "counted; all others stay where they are due. But after "
@@ -90,10 +92,17 @@ def plan_wide(
             "follow it, can come 65536 clocks late, and nothing tells."
         ),
         is_set_anew=False,
-        form="wide-compare",
+        form="wide-compare" if spec.longest_period_s is None else "long-compare",
         channel=chosen,
         sharing=_SHARING,
     )
+
+
+def _largest_period_cycles(spec: Compare, board: Board) -> int:
+    """
+    Return the clocks of the longest period of *spec*, never less than those without one.
+    """
+    return max((spec.longest_period_s or 0) * board.f_cpu_hz, LARGEST_PERIOD_CYCLES)
 
 
 def way_out(board: Board, free: tuple[int, ...]) -> str:

@@ -2,9 +2,9 @@
 Compare: a timer runs through, and a compare channel makes the steps of one motor.
 """
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from stepgen.spec.base import KindModel
 
@@ -19,6 +19,8 @@ class Compare(KindModel):
     """The number of a timer: 2, which has 8 bits, or a 16-bit one. Without it, the first free."""
     channel: Literal["A", "B", "C"] | None = None
     """Its compare channel; without it the first one that no other motor has."""
+    longest_period_s: Annotated[int, Field(ge=5, le=3600)] | None = None
+    """How many seconds two steps can be apart, on a 16-bit timer; without it 4.19 at 16 MHz."""
 
     @model_validator(mode="after")
     def _a_channel_is_one_of_a_timer(self) -> Self:

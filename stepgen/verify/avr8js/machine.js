@@ -63,7 +63,7 @@ class Machine {
     const dog = { interrupt: job.watchdog, fCpuHz: job.f_cpu_hz };
     if (this.correct) addWatchdog(cpu, dog, causes, () => { this.resetDue = true; });
     else addRawWatchdog(cpu, dog);
-    for (const port of job.ports) this.recordPort(port);
+    job.ports.forEach((port, index) => this.recordPort(port, this.ports[index]));
     this.hookWrite(EEDR, (value) => this.mark(value));
     for (const address of job.watch) this.watch(address);
     const setFlag = cpu.setInterruptFlag.bind(cpu);
@@ -109,17 +109,39 @@ class Machine {
     this.hookWrite(address, (value) => this.record(KIND.REGISTER, this.writeEdge(), address, value));
   }
 
-  recordPort({ PIN, DDR, PORT }) {
+  // A port shows PORTx, but for the pins that compare units drive in its place.
+  recordPort({ PIN, DDR, PORT }, port) {
+    const { cpu } = this;
+    const shown = {
+      [DDR]: () => cpu.data[DDR],
+      [PORT]: () => (cpu.data[PORT] & port.overrideMask) | port.overrideValue,
+    };
+    const noting = (changed, edge, act) => {
+      const before = shown[changed]();
+      act();
+      const now = shown[changed]();
+      if (now !== before) this.record(KIND.PORT, edge, changed, now);
+    };
     for (const [written, changed] of [[PIN, PORT], [DDR, DDR], [PORT, PORT]]) {
-      const own = this.cpu.writeHooks[written];
-      this.cpu.writeHooks[written] = (value, old, at, mask) => {
-        const before = this.cpu.data[changed];
-        own(value, old, at, mask);
-        const now = this.cpu.data[changed];
-        if (now !== before) this.record(KIND.PORT, this.writeEdge(), changed, now);
+      const own = cpu.writeHooks[written];
+      cpu.writeHooks[written] = (value, old, at, mask) => {
+        noting(changed, this.writeEdge(), () => own(value, old, at, mask));
         return true;
       };
     }
+    const drive = port.timerOverridePin.bind(port);
+    port.timerOverridePin = (pin, mode) => {
+      noting(PORT, this.matchEdge ?? this.writeEdge(), () => drive(pin, mode));
+    };
+  }
+
+  // A match changes its pin at the edge of its flag.
+  noteMatches(timer) {
+    const update = timer.timerUpdated.bind(timer);
+    timer.timerUpdated = (now, before) => {
+      update(now, before);
+      this.matchEdge = undefined;
+    };
   }
 
   mark(value) {
@@ -140,6 +162,7 @@ class Machine {
       countOnToMax(timer);
       compareWhenLeft(this.cpu, timer);
     }
+    this.noteMatches(timer);
     return timer;
   }
 
@@ -157,6 +180,7 @@ class Machine {
     const vector = interrupt.address / WORDS_PER_VECTOR;
     const edge = timer ? raiseEdge(interrupt, timer, this.correct) : cpu.cycles;
     const already = cpu.data[interrupt.flagRegister] & interrupt.flagMask ? 1 : 0;
+    if (timer) this.matchEdge = edge;
     if (!already) this.raisedAt[vector] = edge;
     if (timer && timer.config.recorded && cpu.data[interrupt.enableRegister] & interrupt.enableMask) {
       this.record(KIND.RAISE, edge, vector, already);

@@ -28,7 +28,7 @@ function accessInTime(cpu, timer) {
     timer.count(false);
     cpu.cycles -= cyclesAhead;
   };
-  const addresses = ["TCCRA", "TCCRB", "TCNT", "OCRA", "OCRB", "OCRC", "ICR", "TIFR"]
+  const addresses = ["TCCRA", "TCCRB", "TCCRC", "TCNT", "OCRA", "OCRB", "OCRC", "ICR", "TIFR"]
     .map((name) => config[name])
     .filter((address) => address);
   for (const address of addresses) {

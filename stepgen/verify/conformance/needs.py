@@ -49,6 +49,7 @@ OF_TIMING: Mapping[str, Sequence[str]] = {
     ),
     "compare": ("timer2-compare", "timer2-moves", "flag-write"),
     "wide-compare": _OF_CHANNELS,
+    "long-compare": _OF_CHANNELS,
     "ladder-compare": _OF_CHANNELS,
 }
 OF_KERNEL: Mapping[str, Sequence[str]] = {

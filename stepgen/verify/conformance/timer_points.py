@@ -9,7 +9,8 @@ from stepgen.verify.conformance.point import MEGA_1280_CHIP, MEGA_CHIP, USB_CHIP
 from stepgen.verify.events import Kind
 
 # Data addresses, chapter 31 "Register Summary".
-TCCR1B, TCNT1L, OCR1AL, TCCR2B = 0x81, 0x84, 0x88, 0xB1
+TCCR1B, TCCR1C, TCNT1L, OCR1AL, TCCR2B = 0x81, 0x82, 0x84, 0x88, 0xB1
+PORTB, OC1A = 0x25, 1 << 1  # OC1A is PB1
 TIMER2_COMPA, TIMER1_COMPA, TIMER1_COMPB = 7, 11, 12  # table 12-6, number less one
 # WGM13:0 and CS12:0, tables 16-4 and 16-5.
 CTC, CTC_ICR, FAST_ICR, FAST = 4, 12, 14, 15
@@ -273,6 +274,40 @@ def compare_pins(lab: Lab) -> Iterator[str]:
         seen = ram(machine, "levels", 4)
         if seen != [1, 0, 1, 0]:
             yield f"levels of OC1A: {seen}, but the chip has [1, 0, 1, 0]"
+
+
+@point("compare-pin-edges", "OC1A is set by a match with its flag, cleared by FOC1A", "16.7, 16.8")
+def compare_pin_edges(lab: Lab) -> Iterator[str]:
+    """
+    See OC1A rise with each of four flags and fall where TCCR1C is written; it stays LOW after that.
+
+    Figure 16-10 sets the flag with the clock that leaves OCR1A, and the same match is what the
+    waveform generator gets.
+    """
+    with lab.running("outputs", watch=(TCCR1C,), STEP=300, LAST=4) as machine:
+        machine.run_until(3_000)
+        flags = cycles(machine, Kind.RAISE, TIMER1_COMPA)[:4]
+        strobes = cycles(machine, Kind.REGISTER, TCCR1C)[:4]
+        port = of_kind(machine, Kind.PORT, PORTB)
+        ups = [int(row["cycle"]) for row in port if row["value"] == OC1A]
+        downs = [int(row["cycle"]) for row in port if row["value"] == 0]
+        yield from lab.differ("cycles between flags", [300] * 3, gaps(flags))
+        yield from lab.differ("OC1A rises", flags, sorted(ups))
+        yield from lab.differ("OC1A falls", strobes, sorted(downs))
+
+
+@point("compare-force", "FOC1A acts as a match, at once and without the flag", "16.7.2, 16.11.3")
+def compare_force(lab: Lab) -> Iterator[str]:
+    """
+    OC1A after a strobe: set, PORTB1, set, toggled twice, cleared, PORTB1; OCF1A stays 0.
+    """
+    with lab.running("force") as machine:
+        machine.run_until_mark(1, limit_cycles=10_000)
+        seen, expected = ram(machine, "levels", 7), [1, 0, 1, 0, 1, 0, 1]
+        if seen != expected:
+            yield f"levels of OC1A: {seen}, but the chip has {expected}"
+        if ram(machine, "flag", 1) != [0]:
+            yield "FOC1A set OCF1A, which it does not on the chip"
 
 
 @point("millis-period", "Timer 0 overflows each 64 x 256 cycles", "15.7.3")

@@ -193,6 +193,9 @@ def boundary(way: Way) -> Iterator[tuple[str, Any]]:
         "what is left of it stays",
         z3.Implies(z3.And(running, limited, z3.Not(ended)), after.to_millis_end == until),
     )
+    laps = z3.And(before.is_in(RUNNING), before.is_lapping, limited)
+    kept = z3.If(until > 0, after.to_millis_end == until, after.to_millis_end <= 0)
+    yield "what is left of it stays in an interval, too, or it stays over", z3.Implies(laps, kept)
 
 
 def _wakes(way: Way, silent: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401

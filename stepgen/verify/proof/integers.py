@@ -26,7 +26,7 @@ class Integer:
 
 
 BOOL = Integer(1)
-U8, U16, U24, U32 = Integer(8), Integer(16), Integer(24), Integer(32)
+U8, U16, U24, U32, U64 = Integer(8), Integer(16), Integer(24), Integer(32), Integer(64)
 I8, I16, I32 = Integer(8, signed=True), Integer(16, signed=True), Integer(32, signed=True)
 
 _NAMES = {
@@ -45,7 +45,8 @@ _NAMES = {
     "long unsigned int": U32,
     "int32_t": I32,
     "long int": I32,
-    "long long unsigned int": Integer(64),
+    "uint64_t": U64,
+    "long long unsigned int": U64,
 }
 
 

@@ -14,13 +14,14 @@ from stepgen.plan.model import Plan
 from stepgen.reference.ladder import Ladder
 from stepgen.verify.ladders import ladder_of
 from stepgen.verify.proof.gimple import Function, functions
+from stepgen.verify.proof.integers import U8, integer
 from stepgen.verify.proof.memory import Place
 from stepgen.verify.proof.numbers import wide
 from stepgen.verify.proof.paths import Paths
 from stepgen.verify.proof.source import Source, read_source
 from stepgen.verify.recipes import IDE_VERSION, Target, board_properties, platform_dir
 
-_CONSTANT = re.compile(r"^constexpr \w+ (\w+) = (\w+?)U?L?;", re.MULTILINE)
+_CONSTANT = re.compile(r"^constexpr \w+ (\w+) = (\w+?)U?L*;", re.MULTILINE)
 _STEPS_FOR = re.compile(
     r"^constexpr uint32_t (\w+StepsFor(?:Turns|Micrometres))\((\w+) \w+\)", re.MULTILINE
 )
@@ -128,7 +129,7 @@ class Chosen:
 
     def __init__(self, library: Library, choose: str, paths: Paths) -> None:
         kinds = library.source.structs[choose.removeprefix("choose")]
-        self._bits = {name: 16 if kind == "uint16_t" else 8 for name, kind in kinds.items()}
+        self._bits = {name: (integer(kind) or U8).bits for name, kind in kinds.items()}
         self._paths = paths
 
     def of(self, period: Any) -> dict[Place, Any]:  # noqa: ANN401 - z3 has no types

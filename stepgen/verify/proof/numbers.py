@@ -8,10 +8,10 @@ import z3
 
 from stepgen.verify.proof.paths import Paths
 
-BITS = 40
+BITS = 72
 """
-Wide enough to be without end: sums, differences and doubles of numbers of 32 bits, and products of
-16 and 10 bits, stay far below 2**39.
+Wide enough to be without end: sums, differences and doubles of numbers of 64 bits, and products of
+16 and 10 bits, stay far below 2**71.
 """
 
 

@@ -11,7 +11,7 @@ import z3
 from stepgen.reference.contract import MotionKind
 from stepgen.reference.facts import MotorFacts
 from stepgen.reference.sequences import Pattern
-from stepgen.reference.timer import TimerSetting
+from stepgen.reference.timer import SLOWEST_CYCLES, TimerSetting
 from stepgen.verify.proof.library import Chosen, Library
 from stepgen.verify.proof.machine import Machine
 from stepgen.verify.proof.memory import CLOCK
@@ -52,7 +52,10 @@ class Way:
         Return what the model is told; the choice of a setting is proven by itself.
         """
         motion: MotionKind = "update-events" if self.before.has("eventAt") else "constant"
-        return _Unset((), Pattern((), ()), self.library.min_top, "hold", motion)
+        slowest = max(SLOWEST_CYCLES, self.library.max_top)
+        return _Unset(
+            (), Pattern((), ()), self.library.min_top, "hold", motion, slowest_cycles=slowest
+        )
 
     @property
     def next_is_chosen(self) -> Any:  # noqa: ANN401

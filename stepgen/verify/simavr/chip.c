@@ -83,7 +83,7 @@ static void let_go(machine *m)
     for (unsigned i = 0; m->facts->ports[i]; i++)
         for (unsigned offset = 1; offset <= 2; offset++) { /* DDRx and PORTx */
             uint16_t address = (uint16_t)(m->facts->pin_address[i] + offset);
-            if (m->avr->data[address])
+            if (offset == 2 ? m->shown[i] : m->avr->data[address])
                 machine_record(m, EVENT_PORT, m->avr->cycle, address, 0);
         }
 }

@@ -131,6 +131,7 @@ int machine_run(machine *m, uint64_t until, int wanted_mark)
         }
     }
     avr_cycle_timer_cancel(m->avr, on_until, m);
+    outputs_catch_up(m, m->avr->cycle);
     return m->error[0] ? RUN_FAILED : m->marked ? RUN_MARKED : RUN_REACHED;
 }
 
@@ -174,7 +175,8 @@ uint8_t machine_register(machine *m, uint16_t address)
         return timer_peek(s->timer, address, avr->cycle);
     if (s && s->role == ROLE_PIN) {
         uint8_t out = avr->data[address + 1];
-        return (uint8_t)((avr->data[address] & ~out) | (avr->data[address + 2] & out));
+        uint8_t levels = outputs_show(m, (uint16_t)(address + 2), avr->cycle);
+        return (uint8_t)((avr->data[address] & ~out) | (levels & out));
     }
     return avr->data[address];
 }

@@ -43,6 +43,8 @@ typedef struct {
     timer *timer;
     avr_io_write_t write;  /* simavr's own handlers, or NULL */
     void *write_param;
+    avr_io_read_t read;
+    void *read_param;
 } slot;
 
 typedef struct {
@@ -58,6 +60,7 @@ struct machine {
     recorder recorder;
     slot slots[MAX_IOs];
     timer timers[MOST_TIMERS];
+    uint8_t shown[12];       /* what each port was recorded to show last */
 
     avr_int_vector_t *vectors[MAX_VECTORS];  /* by priority */
     uint8_t vector_count;
@@ -115,6 +118,12 @@ void registers_hook(machine *m, uint16_t address);
 void registers_take_usb(machine *m, uint16_t address, avr_io_read_t read);
 uint64_t registers_write_edge(const avr_t *avr);
 uint64_t registers_read_edge(const avr_t *avr);
+
+/* outputs.c: pins that compare units drive, by the data address of their PORTx. */
+uint8_t outputs_driven(machine *m, uint16_t port);                /* which bits */
+uint8_t outputs_show(machine *m, uint16_t port, uint64_t edge);   /* the whole port */
+void outputs_settle(machine *m, uint16_t port, uint64_t edge);    /* record what changed */
+void outputs_catch_up(machine *m, uint64_t edge);                 /* up to *edge* */
 
 /* serial.c */
 void serial_install(machine *m);

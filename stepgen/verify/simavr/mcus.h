@@ -10,6 +10,12 @@ enum { FLAG_TOV = 0, FLAG_OCA = 1, FLAG_OCB = 2, FLAG_OCC = 3, FLAG_ICF = 5, FLA
 
 enum { MOST_TIMERS = 5, PRESCALERS = 8 };
 
+/* The pin of a compare unit: the data address of its PORTx, 0 where it has none, and its bit. */
+typedef struct {
+    uint16_t port;
+    uint8_t bit;
+} output_facts;
+
 typedef struct {
     char name;                  /* '1', as simavr names its timer */
     uint16_t base;              /* data address of TCCRnA; the others follow at fixed offsets */
@@ -17,6 +23,7 @@ typedef struct {
     uint8_t channels;           /* compare units: 2 (A, B) or 3 (A, B, C) */
     uint8_t vector[FLAG_BITS];  /* by flag bit */
     uint8_t is_small;           /* 8 bits wide, with fewer registers */
+    output_facts output[3];     /* OCnA, OCnB, OCnC */
     uint8_t restart;            /* the bit of GTCCR that restarts its prescaler */
     uint16_t prescaler[PRESCALERS]; /* by clock select; 0: stopped, or not simulated */
 } timer_facts;

@@ -47,11 +47,20 @@ static void pass_on(slot *s, uint16_t address, uint8_t value)
         avr->data[address] = value;
 }
 
-static void write_port(slot *s, uint16_t address, uint16_t changed, uint8_t value)
+/* PORTx changes, or toggles by way of PINx. */
+static void write_port(slot *s, uint16_t address, uint16_t port, uint8_t value)
+{
+    uint64_t edge = registers_write_edge(s->owner->avr);
+    outputs_catch_up(s->owner, edge);
+    pass_on(s, address, value);
+    outputs_settle(s->owner, port, edge);
+}
+
+static void write_direction(slot *s, uint16_t changed, uint8_t value)
 {
     avr_t *avr = s->owner->avr;
     uint8_t before = avr->data[changed];
-    pass_on(s, address, value);
+    pass_on(s, changed, value);
     if (avr->data[changed] != before)
         machine_record(s->owner, EVENT_PORT, registers_write_edge(avr), changed,
                        avr->data[changed]);
@@ -105,6 +114,8 @@ static void act(slot *s, uint16_t address, uint8_t value)
         write_port(s, address, (uint16_t)(address + 2), strobes(m->avr, value));
         break;
     case ROLE_DDR:
+        write_direction(s, address, value);
+        break;
     case ROLE_PORT:
         write_port(s, address, address, value);
         break;
@@ -165,6 +176,17 @@ static uint8_t on_timer_read(avr_t *avr, avr_io_addr_t address, void *param)
     return timer_read(s->timer, address, registers_read_edge(avr));
 }
 
+/* simavr shows PORTx on a pin that a compare unit drives. */
+static uint8_t on_pin_read(avr_t *avr, avr_io_addr_t address, void *param)
+{
+    slot *s = param;
+    uint8_t levels = s->read ? s->read(avr, address, s->read_param) : avr->data[address];
+    uint16_t port = (uint16_t)(address + 2);
+    uint8_t driven = outputs_driven(s->owner, port) & avr->data[address + 1];
+    uint8_t shown = outputs_show(s->owner, port, registers_read_edge(avr));
+    return (uint8_t)((levels & ~driven) | (shown & driven));
+}
+
 /* Put our hook before simavr's, once. */
 void registers_hook(machine *m, uint16_t address)
 {
@@ -207,12 +229,21 @@ static void take_timer(machine *m, timer *t)
     }
 }
 
+static void take_pins(machine *m, uint16_t address)
+{
+    slot *s = take(m, address, ROLE_PIN);
+    s->read = m->avr->io[AVR_DATA_TO_IO(address)].r.c;
+    s->read_param = m->avr->io[AVR_DATA_TO_IO(address)].r.param;
+    m->avr->io[AVR_DATA_TO_IO(address)].r.c = on_pin_read;
+    m->avr->io[AVR_DATA_TO_IO(address)].r.param = s;
+}
+
 void registers_install(machine *m)
 {
     static const uint16_t FLAGS[] = {0x35 /* TIFR0 */, 0x3B /* PCIFR */, 0x3C /* EIFR */};
     const mcu_facts *facts = m->facts;
     for (unsigned i = 0; facts->ports[i]; i++) {
-        take(m, facts->pin_address[i], ROLE_PIN);
+        take_pins(m, facts->pin_address[i]);
         take(m, (uint16_t)(facts->pin_address[i] + 1), ROLE_DDR);
         take(m, (uint16_t)(facts->pin_address[i] + 2), ROLE_PORT);
     }

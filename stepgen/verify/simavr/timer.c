@@ -98,6 +98,43 @@ static void set_flag(timer *t, unsigned bit, uint64_t edge)
     }
 }
 
+static unsigned action_of(const timer *t, unsigned channel)
+{
+    return t->control_a >> (6 - 2 * channel) & 3; /* COMnx */
+}
+
+int timer_drives(const timer *t, unsigned channel)
+{
+    return t->facts->output[channel].port && action_of(t, channel) && mode_of(t)->kind <= CTC;
+}
+
+static void change_output(timer *t, unsigned channel, uint64_t edge)
+{
+    enum { TOGGLE = 1, CLEAR, SET };
+    uint8_t bit = (uint8_t)(1u << channel);
+    if (!timer_drives(t, channel))
+        return;
+    switch (action_of(t, channel)) {
+    case TOGGLE:
+        t->output ^= bit;
+        break;
+    case CLEAR:
+        t->output &= (uint8_t)~bit;
+        break;
+    case SET:
+        t->output |= bit;
+        break;
+    }
+    outputs_settle(t->owner, t->facts->output[channel].port, edge);
+}
+
+void timer_force(timer *t, unsigned channels, uint64_t edge)
+{
+    for (unsigned i = 0; i < t->facts->channels; i++)
+        if (channels & (1u << i))
+            change_output(t, i, edge);
+}
+
 static void load_buffers(timer *t)
 {
     memcpy(t->active, t->buffer, sizeof t->active);
@@ -155,8 +192,10 @@ static void tick(timer *t, uint64_t edge)
     if (m->kind == NORMAL)
         at_top = 0;
     for (unsigned i = 0; i < t->facts->channels; i++)
-        if (t->count == t->active[i] && !t->blocked)
+        if (t->count == t->active[i] && !t->blocked) {
             set_flag(t, FLAG_OCA + i, edge);
+            change_output(t, i, edge);
+        }
     t->blocked = 0;
     if (m->kind >= PHASE)
         tick_both_ways(t, edge, at_top);
@@ -196,6 +235,9 @@ static uint64_t skip_laps(const timer *t, uint64_t ticks)
 {
     if (t->owner->avr->data[t->facts->timsk])
         return 0;
+    for (unsigned i = 0; i < t->facts->channels; i++)
+        if (timer_drives(t, i)) /* it may toggle */
+            return 0;
     uint32_t top = top_of(t);
     uint64_t lap = mode_of(t)->kind >= PHASE ? 2 * (uint64_t)(top ? top : 1) : top + 1;
     return ticks / lap * lap;

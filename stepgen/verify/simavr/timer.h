@@ -26,9 +26,12 @@
  * takes a write at once; in fast PWM it takes the buffer when the counter itself goes
  * to BOTTOM (a TCNTn = 0 by the CPU does not count).
  *
+ * OCnx, in normal and CTC modes: it is set, cleared or toggled at the edge that sets the flag, or where
+ * FOCnx is written, which sets no flag. While COMnx is 0 it stays, and PORTx drives the pin.
+ *
  * Timer 2 has no ICR, no channel C and no TEMP: its registers are single bytes.
  *
- * Left out: compare outputs (OCnx pins, FOCnx), input capture, external clocks, ASSR, PRR. Phase
+ * Left out: compare outputs of the PWM modes, whose pins show PORTx, input capture, external clocks, ASSR, PRR. Phase
  * correct modes count as they should, but set TOVn when leaving BOTTOM. */
 
 #ifndef STEPGEN_TIMER_H
@@ -51,12 +54,16 @@ typedef struct {
     uint16_t capture;     /* ICRn */
     uint16_t active[3];   /* what the compare units use */
     uint16_t buffer[3];   /* what the CPU wrote last */
+    uint8_t output;       /* OCnx, a bit for each channel */
     uint64_t synced;
     uint64_t prescaler_origin; /* its prescaler was zero at this edge */
 } timer;
 
 /* Take the registers of *t* over from simavr. */
 void timer_install(timer *t, struct machine *owner, const timer_facts *facts);
+
+/* Let FOCnx act as a match of each channel in *channels*, but for the flag. */
+void timer_force(timer *t, unsigned channels, uint64_t edge);
 
 /* Let the counter run up to and including the tick at *edge*, if there is one. */
 void timer_sync(timer *t, uint64_t edge);
@@ -71,6 +78,9 @@ void timer_schedule(timer *t);
 int timer_top_is_icr(const timer *t);
 int timer_is_buffered(const timer *t);
 int timer_turns(const timer *t);
+
+/* Whether the compare unit *channel* drives its pin, and so is not in a PWM mode. */
+int timer_drives(const timer *t, unsigned channel);
 
 /* A write that takes effect at *edge*, a read during the cycle that starts at *edge*. */
 void timer_write(timer *t, uint16_t address, uint8_t value, uint64_t edge);

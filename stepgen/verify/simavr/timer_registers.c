@@ -7,7 +7,7 @@
 #include "timer.h"
 
 /* Offsets from TCCRnA; OCRnx follow each other, high bytes are odd. */
-enum { TCCRA = 0, TCCRB = 1, TCNTL = 4, TCNTH = 5, ICRL = 6, ICRH = 7, OCRAL = 8, LAST = 13 };
+enum { TCCRA = 0, TCCRB = 1, TCCRC = 2, TCNTL = 4, TCNTH = 5, ICRL = 6, ICRH = 7, OCRAL = 8, LAST = 13 };
 
 /* The same of timer 2, whose registers follow each other. */
 enum { SMALL_TCNT = 2, SMALL_OCRA = 3, SMALL_LAST = 4 };
@@ -17,6 +17,12 @@ static void write_compare(timer *t, unsigned channel, uint16_t value)
     t->buffer[channel] = value;
     if (!timer_is_buffered(t))
         t->active[channel] = value;
+}
+
+/* The strobes FOCnA, FOCnB and FOCnC, bits 7 to 5, as bits 0 to 2. */
+static unsigned strobed(uint8_t value)
+{
+    return (value >> 7 & 1u) | (value >> 5 & 2u) | (value >> 3 & 4u);
 }
 
 static void write_enables(timer *t, uint8_t value, uint64_t edge)
@@ -40,15 +46,19 @@ static void write_small(timer *t, unsigned offset, uint8_t value)
     }
 }
 
-static void write_block(timer *t, unsigned offset, uint8_t value)
+static void write_block(timer *t, unsigned offset, uint8_t value, uint64_t edge)
 {
     uint16_t both = (uint16_t)(t->temp << 8 | value);
     if (offset == TCCRA) {
         t->control_a = value;
     } else if (offset == TCCRB) {
-        t->control_b = value;
+        t->control_b = t->facts->is_small ? value & 0x3F : value;
+        if (t->facts->is_small)
+            timer_force(t, strobed(value) & 3u, edge);
     } else if (t->facts->is_small) {
         write_small(t, offset, value);
+    } else if (offset == TCCRC) {
+        timer_force(t, strobed(value), edge);
     } else if (offset == TCNTL) {
         t->count = both;
         t->blocked = 1;
@@ -72,7 +82,9 @@ void timer_write(timer *t, uint16_t address, uint8_t value, uint64_t edge)
     else if (address == t->facts->timsk)
         write_enables(t, value, edge);
     else
-        write_block(t, address - t->facts->base, value);
+        write_block(t, address - t->facts->base, value, edge);
+    for (unsigned i = 0; i < t->facts->channels; i++) /* they may drive their pins from now on */
+        outputs_settle(t->owner, t->facts->output[i].port, edge);
     timer_schedule(t);
 }
 
