@@ -274,8 +274,9 @@ def _first_sets(subject: Subject, trace: Trace, runs: Sequence[Run]) -> dict[int
     """
     if subject.channel is None:
         return {}
-    starts = trace.clock_starts(subject.timer)
-    sets = [one.cycle for one in trace.channel_sets(subject.channel, starts) if one.in_interrupt]
+    sets = [
+        one.cycle for one in trace.channel_sets(subject.channel, subject.timer) if one.in_interrupt
+    ]
     found = {}
     for run in runs:
         place = bisect_left(sets, run.entered)

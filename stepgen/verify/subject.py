@@ -53,12 +53,11 @@ class Subject:
         """
         Return when its timer was started in *trace*; of a channel, when a call set it.
         """
-        starts = trace.clock_starts(self.timer)
         if self.channel is None:
-            return starts
+            return trace.clock_starts(self.timer)
         return [
             ClockStart(one.cycle, 1, 0)
-            for one in trace.channel_sets(self.channel, starts)
+            for one in trace.channel_sets(self.channel, self.timer)
             if not one.in_interrupt
         ]
 

@@ -62,8 +62,7 @@ class ClockStart:
     tcnt: int
 
 
-@dataclass(frozen=True)
-class ChannelWrite:
+class ChannelWrite(NamedTuple):
     """
     A compare register was written, which matches the counter *ahead_cycles* later.
     """
@@ -92,6 +91,9 @@ class Trace:
 
     def __post_init__(self) -> None:
         self.events = self.events[np.argsort(self.events["cycle"], kind="stable")]
+        self._by_kind: dict[Kind, Events] = {}
+        self._starts: dict[int, list[ClockStart]] = {}
+        self._sets: dict[int, list[ChannelWrite]] = {}
         letters = {port.port.address: port.letter for port in self.mcu.ports}
         rows = self._of(Kind.PORT)
         self.ports = [
@@ -119,11 +121,10 @@ class Trace:
         self.masked = self._sections(self._of(Kind.MASKED)["cycle"].tolist())
 
     def _of(self, kind: Kind, source: int | None = None) -> Events:
-        chosen = self.events["kind"] == kind
-        if source is not None:
-            chosen &= self.events["source"] == source
-        rows: Events = self.events[chosen]
-        return rows
+        if kind not in self._by_kind:
+            self._by_kind[kind] = self.events[self.events["kind"] == kind]
+        rows = self._by_kind[kind]
+        return rows if source is None else rows[rows["source"] == source]
 
     def runs(self, vector: int) -> list[Run]:
         """
@@ -169,7 +170,12 @@ class Trace:
         """
         Return when the clock select of *timer* was set after it had been 0.
         """
-        starts = []
+        address = timer.tccrb.address
+        if address not in self._starts:
+            self._starts[address] = list(self._clock_starts(timer))
+        return self._starts[address]
+
+    def _clock_starts(self, timer: Timer) -> Iterator[ClockStart]:
         counter = {timer.tcnt.address + byte: 0 for byte in range(timer.counter_bytes)}
         running = False
         rows = self._of(Kind.REGISTER)
@@ -180,20 +186,25 @@ class Trace:
                 select = value & _CLOCK_SELECT
                 if select and not running:
                     count = int.from_bytes(counter.values(), "little")
-                    starts.append(ClockStart(cycle, timer.prescalers[select - 1], count))
+                    yield ClockStart(cycle, timer.prescalers[select - 1], count)
                 running = bool(select)
-        return starts
 
-    def channel_sets(
-        self, channel: Register, starts: Sequence[ClockStart]
-    ) -> Iterator[ChannelWrite]:
+    def channel_sets(self, channel: Register, timer: Timer) -> list[ChannelWrite]:
         """
-        Yield each write of *channel*, of a timer that runs from the last of *starts* before it on.
+        Return each write of *channel* of *timer* after that was started.
 
         It counts each cycle: at the edge s + n a timer started at s with t shows t + n, and at
         the edge at which it leaves the value of the channel it sets its flag (datasheet, timing
         diagram "Setting of OCFnx, no Prescaling"). The high byte, written first, waits in TEMP.
         """
+        if channel.address not in self._sets:
+            starts = self.clock_starts(timer)
+            self._sets[channel.address] = list(self._channel_sets(channel, starts))
+        return self._sets[channel.address]
+
+    def _channel_sets(
+        self, channel: Register, starts: Sequence[ClockStart]
+    ) -> Iterator[ChannelWrite]:
         high = 0
         rows = self._of(Kind.REGISTER)
         low_address, high_address = channel.address, channel.address + 1
