@@ -54,7 +54,6 @@ def template_dir() -> Path:
     return bundled if bundled.is_dir() else package.parent / "templates"
 
 
-@functools.lru_cache(maxsize=2)
 def environment(templates: Path | None = None) -> Environment:
     """
     Return the one Jinja environment; *templates* replaces the folder that comes with stepgen.
@@ -62,8 +61,13 @@ def environment(templates: Path | None = None) -> Environment:
     It is kept, and with it the templates that it has compiled: they take most of the time of
     a library. A template whose file changes is compiled again.
     """
+    return _environment(templates or template_dir())
+
+
+@functools.lru_cache(maxsize=2)
+def _environment(templates: Path) -> Environment:
     made = Environment(
-        loader=FileSystemLoader(templates or template_dir()),
+        loader=FileSystemLoader(templates),
         undefined=StrictUndefined,
         extensions=[KeepEmptyLines],
         keep_trailing_newline=True,
