@@ -2,9 +2,12 @@
 The page: everything that its template prints, and the page as text.
 """
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from jinja2 import Environment
 
 from stepgen import __version__
 from stepgen.datasheet import figures
@@ -68,9 +71,16 @@ def render_datasheet(plan: Plan, spec_text: str, report: "Report | None" = None)
 
     The same plan, spec and report give the same bytes: no date, no path of this machine.
     """
-    made = environment().overlay(autoescape=True)
     view = page_view(plan, spec_text, report)
-    return tidy(made.get_template("datasheet/page.html.j2").render(page=view))
+    return tidy(_environment().get_template("datasheet/page.html.j2").render(page=view))
+
+
+@functools.cache
+def _environment() -> Environment:
+    """
+    Return that of libraries, but that it escapes what is printed; kept as that is.
+    """
+    return environment().overlay(autoescape=True)
 
 
 def page_view(plan: Plan, spec_text: str, report: "Report | None") -> PageView:

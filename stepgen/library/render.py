@@ -2,6 +2,7 @@
 From a view to the files of the library, as text.
 """
 
+import functools
 import re
 from hashlib import sha256
 from importlib.resources import files
@@ -56,9 +57,17 @@ def template_dir() -> Path:
 def environment(templates: Path | None = None) -> Environment:
     """
     Return the one Jinja environment; *templates* replaces the folder that comes with stepgen.
+
+    It is kept, and with it the templates that it has compiled: they take most of the time of
+    a library. A template whose file changes is compiled again.
     """
+    return _environment(templates or template_dir())
+
+
+@functools.lru_cache(maxsize=2)
+def _environment(templates: Path) -> Environment:
     made = Environment(
-        loader=FileSystemLoader(templates or template_dir()),
+        loader=FileSystemLoader(templates),
         undefined=StrictUndefined,
         extensions=[KeepEmptyLines],
         keep_trailing_newline=True,

@@ -5,6 +5,7 @@ The plan: every number decided, nothing left for the templates to work out.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 
 from stepgen.devices import Board, Timer
 from stepgen.plan.instructions import Gate, Storage
@@ -186,14 +187,14 @@ class MotorPlan:
     wish_steps_per_second: Fraction | None = None
     command_timeout_ms: int | None = None
 
-    @property
+    @cached_property
     def isr_bound_cycles(self) -> int:
         """
         Return the longest that its step interrupt may take, from the response through RETI.
         """
         return self.punctual_bound_cycles + self.gate.late_cycles
 
-    @property
+    @cached_property
     def punctual_bound_cycles(self) -> int:
         """
         Return the same of an interrupt that was not held up for too long.
@@ -206,7 +207,7 @@ class MotorPlan:
             - (0 if self.timing.is_set_anew else self.motion.setting_cycles)
         )
 
-    @property
+    @cached_property
     def recurring_bound_cycles(self) -> int:
         """
         Return the same of the interrupts that can come at each step of a long motion.

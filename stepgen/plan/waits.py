@@ -28,8 +28,9 @@ Source: Davis, Burns, Bril, Lukkien, Controller Area Network (CAN) schedulabilit
 revisited and revised, Real-Time Systems 35, 2007, section 3; it is the same arbitration.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 from stepgen.plan.model import Part
 
@@ -122,61 +123,89 @@ def longest_wait(
     """
     Return the longest that *own* waits; None if it can wait for its patience, and be lost.
     """
-    first: tuple[Part, ...] = ()
+    queue = _Queue.of(own, others, main)
+    first: _Causes = []
     start = latest = 0
     for runs in range(_MOST_RUNS):
         due = runs * own.spacing_cycles
-        parts = _settle(own, runs, others, main, (start, due + patience_cycles))
-        if parts is None:
+        causes = queue.settle(runs, start, due + patience_cycles)
+        if causes is None:
             return None
-        start = sum(part.cycles for part in parts)
-        first, latest = first or parts, max(latest, start - due)
+        start = _total(causes)
+        first, latest = first or causes, max(latest, start - due)
         rare = own.rare_cycles if runs < RARE_RUNS else 0
         ended = start + own.cycles + rare + main.instruction_cycles
         if ended <= due + own.spacing_cycles:
-            return Wait(latest, first)
+            return Wait(latest, tuple(Part(*cause) for cause in first))
     return None
 
 
-def _settle(
-    own: Source,
-    runs: int,
-    others: Sequence[Source],
-    main: MainLine,
-    window: tuple[int, int],
-) -> tuple[Part, ...] | None:
-    """
-    Return what comes before the run after *runs* others; None if it begins too late.
-
-    *window* is where to look for its beginning: not before the first, and before the second.
-    """
-    start, too_late = window
-    while start < too_late:
-        parts = tuple(_before(own, runs, others, main, start))
-        found = sum(part.cycles for part in parts)
-        if found <= start:
-            return parts
-        start = found
-    return None
+# What an interrupt waits for, and for how many cycles.
+_Causes = list[tuple[str, int]]
 
 
-def _before(
-    own: Source, runs: int, others: Sequence[Source], main: MainLine, start: int
-) -> Iterator[Part]:
+def _total(causes: _Causes) -> int:
+    return sum([cycles for _, cycles in causes])
+
+
+@dataclass(frozen=True)
+class _Queue:
     """
-    Yield what can come before a run that begins at *start*, counted from the first due time.
+    What *own* has to wait for.
+
+    Args:
+        own: The interrupt.
+        ahead: Those of lower number, which are served first.
+        begun: Of those of higher number the one that takes longest: it has just begun.
+        main: What of the main line has interrupts wait.
     """
-    later = [other for other in others if other.vector > own.vector]
-    lower = max(later, key=lambda other: other.total_cycles(1), default=None)
-    masked = main.masked_cycles
-    counts = [(one, one.most(start, masked)) for one in others if one.vector < own.vector]
-    served = sum(count for _, count in counts) + runs + bool(lower)
-    passed = 1 + served - bool(lower)  # instructions since the stretch that comes first
-    yield Part("a call with interrupts off", masked * (1 + passed // LONG_APART))
-    yield Part("short stretches with interrupts off", passed // SHORT_APART * SHORT_STRETCH_CYCLES)
-    if lower:
-        yield Part(lower.cause, lower.total_cycles(1))
-    yield from (Part(one.cause, one.total_cycles(count)) for one, count in counts if count)
-    if runs:
-        yield Part("its own earlier steps", own.total_cycles(runs))
-    yield Part("instructions in between", (1 + served) * main.instruction_cycles)
+
+    own: Source
+    ahead: tuple[Source, ...]
+    begun: Source | None
+    main: MainLine
+
+    @classmethod
+    def of(cls, own: Source, others: Sequence[Source], main: MainLine) -> Self:
+        """
+        Return the queue of *own* among *others*.
+        """
+        ahead = tuple(other for other in others if other.vector < own.vector)
+        higher = [other for other in others if other.vector > own.vector]
+        return cls(own, ahead, max(higher, key=lambda one: one.total_cycles(1), default=None), main)
+
+    def settle(self, runs: int, start: int, too_late: int) -> _Causes | None:
+        """
+        Return what comes before the run after *runs* others; None if it begins too late.
+
+        It does not begin before *start*, and has to begin before *too_late*.
+        """
+        while start < too_late:
+            causes = self._before(runs, start)
+            found = _total(causes)
+            if found <= start:
+                return causes
+            start = found
+        return None
+
+    def _before(self, runs: int, start: int) -> _Causes:
+        """
+        Return what can come before a run that begins at *start*, counted from the first due time.
+        """
+        masked, instruction = self.main.masked_cycles, self.main.instruction_cycles
+        counts = [one.most(start, masked) for one in self.ahead]
+        passed = 1 + sum(counts) + runs  # instructions since the stretch that comes first
+        short = passed // SHORT_APART * SHORT_STRETCH_CYCLES
+        causes = [
+            ("a call with interrupts off", masked * (1 + passed // LONG_APART)),
+            ("short stretches with interrupts off", short),
+        ]
+        if self.begun:
+            causes.append((self.begun.cause, self.begun.total_cycles(1)))
+        for one, count in zip(self.ahead, counts, strict=True):
+            if count:
+                causes.append((one.cause, one.total_cycles(count)))
+        if runs:
+            causes.append(("its own earlier steps", self.own.total_cycles(runs)))
+        causes.append(("instructions in between", (passed + bool(self.begun)) * instruction))
+        return causes

@@ -319,11 +319,10 @@ class Bench:
         return self.machine.cycle
 
     def _run_until_free(self, call: Call) -> None:
-        start = self.machine.cycle
-        while self.machine.read_ram(self._mailbox, 1)[0]:
-            if self.machine.cycle > start + _ANSWER_CYCLES:
-                raise StepgenError.of(f"the sketch hangs after {call}", place=str(self.elf))
-            self.machine.run_until(self.machine.cycle + self._patience_cycles)
+        if not self.machine.run_until_zero(
+            self._mailbox, step_cycles=self._patience_cycles, limit_cycles=_ANSWER_CYCLES
+        ):
+            raise StepgenError.of(f"the sketch hangs after {call}", place=str(self.elf))
 
 
 def mail(call: Call, loop: Loop) -> bytes:

@@ -4,7 +4,6 @@ The comparison: what a motor was seen to do against what the reference model say
 
 from bisect import bisect_left
 from collections.abc import Sequence
-from dataclasses import replace
 
 from stepgen.plan.model import MotorPlan
 from stepgen.reference.stimuli import Edge, EdgeKind
@@ -62,7 +61,7 @@ def within_tolerance(runs: list[Run], edges: Sequence[Edge], tolerance_cycles: i
         for offset in range(-tolerance_cycles, tolerance_cycles + 1)
         for edge in edges
     }
-    return [replace(run, raised=near.get(run.raised, run.raised)) for run in runs]
+    return [run._replace(raised=near.get(run.raised, run.raised)) for run in runs]
 
 
 def _compare_steps(

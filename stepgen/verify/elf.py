@@ -2,6 +2,8 @@
 What the harness needs of an ELF file of avr-gcc: the flash image and the symbols.
 """
 
+import functools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,16 +28,25 @@ class Firmware:
     """
 
     image: bytes
-    symbols: dict[str, int]
+    symbols: Mapping[str, int]
 
 
 def read_firmware(path: Path) -> Firmware:
     """
-    Return the program in the ELF file *path*.
+    Return the program in the ELF file *path*, read once as long as the file does not change.
 
     Raises:
         StepgenError: The file is missing or is no ELF file for AVR.
     """
+    try:
+        state = path.stat()
+    except OSError as problem:
+        raise StepgenError.of(f"not an ELF file: {problem}", place=str(path)) from problem
+    return _read(path, state.st_mtime_ns, state.st_size)
+
+
+@functools.lru_cache(maxsize=32)
+def _read(path: Path, mtime_ns: int, size: int) -> Firmware:  # noqa: ARG001 - with what the file is
     try:
         with path.open("rb") as stream:
             elf = ELFFile(stream)

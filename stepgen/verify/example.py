@@ -5,10 +5,13 @@ The example sketch on a simulated chip: no mailbox, just the program that users 
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from stepgen.plan.model import Plan
 from stepgen.spec import LoadedSpec
 from stepgen.verify.bench import Answer, Call, CallKind, watched_registers
 from stepgen.verify.compare import Scene, compare
+from stepgen.verify.events import Events, Kind
 from stepgen.verify.scenarios import BACK, DRIVE
 from stepgen.verify.shared_pins import compare_shared
 from stepgen.verify.simulators import SIMAVR
@@ -33,7 +36,7 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
     ) as machine:
         machine.fine = True
         machine.run_until(_RUN_SECONDS * f_cpu_hz)
-        trace = Trace(machine.events(), plan.board.mcu)
+        trace = Trace(_without_empty_sections(machine.events()), plan.board.mcu)
         until = machine.cycle
         findings = []
         results = []
@@ -49,6 +52,20 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
             results.append(result)
         findings.extend(compare_shared(motors, results, Scene(trace, (), plan, until)))
     return tuple(findings)
+
+
+def _without_empty_sections(events: Events) -> Events:
+    """
+    Return *events* without the stretches with interrupts off in which nothing is recorded.
+
+    A sketch that waits in delay() has a million of them in two seconds, and none starts a motor.
+    """
+    kinds = events["kind"]
+    is_empty = (kinds[:-1] == Kind.MASKED) & (kinds[1:] == Kind.UNMASKED)
+    kept = np.ones(len(events), dtype=bool)
+    kept[:-1] &= ~is_empty
+    kept[1:] &= ~is_empty
+    return events[kept]
 
 
 def _kept_alive(subject: Subject) -> Subject:

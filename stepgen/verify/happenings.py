@@ -136,13 +136,12 @@ def happenings(
     for answer in answers:
         if answer.call.motor == index:
             yield from _rows_of_call(answer, trace, subject.facts)
-    starts = trace.clock_starts(subject.timer)
     if subject.channel is None:
-        for start in starts:
+        for start in trace.clock_starts(subject.timer):
             clock_on = ClockOn(start.cycle, start.prescaler, start.tcnt)
             yield start.cycle, Order.CLOCK, Told(clock_on)
     else:
-        for one in trace.channel_sets(subject.channel, starts):
+        for one in trace.channel_sets(subject.channel, subject.timer):
             if not one.in_interrupt:
                 yield one.cycle, Order.CLOCK, Told(ChannelSet(one.cycle, one.ahead_cycles))
     vector = board.mcu.vector("TIMER0_OVF_vect").number

@@ -43,6 +43,38 @@ class Loaded(ABC):
         Free what is held; more than once does no harm.
         """
 
+    @property
+    @abstractmethod
+    def cycle(self) -> int:
+        """
+        Return the CPU clocks since reset.
+        """
+
+    @abstractmethod
+    def run_until(self, cycle: int) -> None:
+        """
+        Run to the first instruction boundary at or after *cycle*.
+        """
+
+    @abstractmethod
+    def read_ram(self, address: int, size: int) -> bytes:
+        """
+        Return *size* bytes of RAM from data address *address* on.
+        """
+
+    def run_until_zero(self, address: int, *, step_cycles: int, limit_cycles: int) -> bool:
+        """
+        Run until the byte of RAM at *address* is 0; return False after *limit_cycles* more.
+
+        It is looked at each *step_cycles*.
+        """
+        until = self.cycle + limit_cycles
+        while self.read_ram(address, 1)[0]:
+            if self.cycle > until:
+                return False
+            self.run_until(self.cycle + step_cycles)
+        return True
+
     def send_usb(self, data: bytes) -> None:
         """
         Let a program at the computer open the board's port over USB, and send *data* there.

@@ -5,7 +5,7 @@ The oracle: the reference model, fed with what happened on the chip.
 import re
 from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from stepgen.plan.model import Plan
@@ -160,7 +160,7 @@ class Oracle:
         """
         later = self._later
         return [
-            replace(run, raised=later[run.raised], serves_later=True)
+            run._replace(raised=later[run.raised], serves_later=True)
             if run.raised in later
             else run
             for run in runs
@@ -274,8 +274,9 @@ def _first_sets(subject: Subject, trace: Trace, runs: Sequence[Run]) -> dict[int
     """
     if subject.channel is None:
         return {}
-    starts = trace.clock_starts(subject.timer)
-    sets = [one.cycle for one in trace.channel_sets(subject.channel, starts) if one.in_interrupt]
+    sets = [
+        one.cycle for one in trace.channel_sets(subject.channel, subject.timer) if one.in_interrupt
+    ]
     found = {}
     for run in runs:
         place = bisect_left(sets, run.entered)

@@ -144,7 +144,7 @@ def wrong_leg_starts(subject: Subject, scene: Scene, legs: Sequence[Start]) -> I
     """
     if not legs or subject.channel is None:
         return
-    sets = scene.trace.channel_sets(subject.channel, scene.trace.clock_starts(subject.timer))
+    sets = scene.trace.channel_sets(subject.channel, subject.timer)
     by_call = [one for one in sets if not one.in_interrupt]
     for leg in legs:
         section = scene.trace.masked_section(leg.cycle)

@@ -123,6 +123,11 @@ def _faults(step: CallStep, plan: Plan) -> Iterator[tuple[tuple[str | int, ...],
         if bit not in bits and "control" in fields:
             ways = f"one of {', '.join(bits)}, or a number" if bits else "a number"
             yield ("control", index), f"is no bit of {step.call}; write {ways}"
+    if step.kind is CallKind.WATCHDOG and plan.watchdog_ms is None:
+        yield (
+            ("call",),
+            "there is no watchdog; give the spec `watchdog_ms`, or leave this out",
+        )
     motors = {motor.name: motor for motor in plan.motors}
     if step.motor is not None and step.motor not in motors:
         yield ("motor",), f"is no motor of this spec; it has {', '.join(motors)}"

@@ -46,6 +46,9 @@ class Machine(Protocol):
     def run_until_mark(self, value: int, *, limit_cycles: int) -> bool:
         """Run until *value* is written to EEDR; return False after *limit_cycles* more."""
 
+    def run_until_zero(self, address: int, *, step_cycles: int, limit_cycles: int) -> bool:
+        """Run until RAM at *address* is 0, looking each *step_cycles*; False after the limit."""
+
     def read_ram(self, address: int, size: int) -> bytes:
         """Return *size* bytes of RAM from data address *address* on."""
 

@@ -4,6 +4,7 @@ What verification knows of a motor, taken from the spec and the board, not from 
 The oracle must not share the planner's tables: wires and phases are read here once more.
 """
 
+import functools
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -53,12 +54,11 @@ class Subject:
         """
         Return when its timer was started in *trace*; of a channel, when a call set it.
         """
-        starts = trace.clock_starts(self.timer)
         if self.channel is None:
-            return starts
+            return trace.clock_starts(self.timer)
         return [
             ClockStart(one.cycle, 1, 0)
-            for one in trace.channel_sets(self.channel, starts)
+            for one in trace.channel_sets(self.channel, self.timer)
             if not one.in_interrupt
         ]
 
@@ -69,14 +69,14 @@ class Subject:
         """
         return self.facts.ladder is not None
 
-    @property
+    @functools.cached_property
     def masks(self) -> dict[str, int]:
         """
         Return the bits of its wires on each port, by the port's letter.
         """
         return _masks(self.drive.wires)
 
-    @property
+    @functools.cached_property
     def own_masks(self) -> dict[str, int]:
         """
         Return the same without the wires that it shares.
@@ -99,7 +99,11 @@ class Subject:
         """
         Return what its wires show when the ports hold *ports*.
         """
-        return tuple(bool(ports[bit.port] >> bit.bit & 1) for bit in self.drive.wires)
+        return tuple([ports[port] & mask != 0 for port, mask in self._places])
+
+    @functools.cached_property
+    def _places(self) -> tuple[tuple[str, int], ...]:
+        return tuple((bit.port, 1 << bit.bit) for bit in self.drive.wires)
 
 
 def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:

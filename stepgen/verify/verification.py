@@ -75,7 +75,7 @@ def verify_spec(
         )
         for motor in plan.motors
     }
-    every = _scenarios(plan)
+    every = scenarios_of(plan)
     report.left_out = _left_out(every, plan, simulator)
     runs = [scenario for scenario, _ in every if scenario.name not in report.left_out]
     for scenario in track(runs):
@@ -92,7 +92,7 @@ def verify_spec(
     return report
 
 
-def _scenarios(plan: Plan) -> list[tuple[Scenario, bool]]:
+def scenarios_of(plan: Plan) -> list[tuple[Scenario, bool]]:
     """
     Return the scenarios of *plan*, and of each whether it makes steps so late that they count.
     """

@@ -2,9 +2,11 @@
 The command line as users run it: a process, an exit code and two streams.
 """
 
+import json
+import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,19 +27,42 @@ class Run:
 Stepgen = Callable[..., Run]
 
 
+@pytest.fixture(scope="session")
+def warm() -> Iterator["subprocess.Popen[str]"]:
+    """
+    Yield a process that has imported stepgen, and makes the runs that it is told to.
+    """
+    with subprocess.Popen(
+        [sys.executable, "-m", "tests.cli.warm"],
+        cwd=Path(__file__).parents[2],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        encoding="utf-8",
+    ) as process:
+        yield process
+
+
 @pytest.fixture
-def stepgen(tmp_path: Path) -> Stepgen:
+def stepgen(tmp_path: Path, warm: "subprocess.Popen[str]") -> Stepgen:
     """
     Return a function that runs stepgen in *tmp_path* and checks that it shows no traceback.
     """
+    out, err = (tmp_path.with_name(f"{tmp_path.name}.{name}") for name in ("out", "err"))
 
     def run(*arguments: str | Path) -> Run:
-        command = [sys.executable, "-m", "stepgen", *map(str, arguments)]
-        done = subprocess.run(
-            command, cwd=tmp_path, capture_output=True, check=False, encoding="utf-8", timeout=300
-        )
-        assert "Traceback" not in done.stderr
-        return Run(done.returncode, done.stdout, done.stderr)
+        request = {
+            "arguments": [*map(str, arguments)],
+            "folder": str(tmp_path),
+            "environment": dict(os.environ),
+        }
+        assert warm.stdin is not None
+        assert warm.stdout is not None
+        warm.stdin.write(f"{json.dumps(request)}\n")
+        warm.stdin.flush()
+        code = int(warm.stdout.readline())
+        said = Run(code, out.read_text(encoding="utf-8"), err.read_text(encoding="utf-8"))
+        assert "Traceback" not in said.err
+        return said
 
     return run
 

@@ -17,6 +17,7 @@ from stepgen.verify.report import Check, MotorFigures, SpecReport
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
 SHIELD = next(path for path in SPECS if path.stem == "uno_motor_shield")
+OTHER_COMPILERS = [one for one in find_compilers() if one != default_compiler()]
 # Motors that no spec has: update events with tables, on far ports, several of them.
 UPDATE_EVENTS = """\
 library: Changing
@@ -55,11 +56,13 @@ def only_check(report: SpecReport) -> Check:
     return check
 
 
-@pytest.mark.parametrize("compiler", find_compilers(), ids=lambda compiler: compiler.name)
+@pytest.mark.parametrize("compiler", OTHER_COMPILERS, ids=lambda compiler: compiler.name)
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_the_plan_of_each_spec_is_proven(path: Path, compiler: Compiler) -> None:
     """
     No interrupt and no call can take longer than the shortest period was worked out from.
+
+    With the usual compiler that is a check of `stepgen verify`: tests/sim/test_verify.py.
     """
     report = judge(load_spec(path), compiler)
 

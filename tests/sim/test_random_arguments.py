@@ -13,9 +13,21 @@ import pytest
 
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.reference.axis import wrapped_int32
-from stepgen.verify.bench import Bench, Call, CallKind, Context, Loop, has_call, is_axis
+from stepgen.verify.bench import (
+    Bench,
+    Call,
+    CallKind,
+    Context,
+    Loop,
+    Watchdog,
+    has_call,
+    is_axis,
+)
+from stepgen.verify.events import Kind
+from stepgen.verify.runner import run_scenario
 from stepgen.verify.scenario_model import fields_of
 from stepgen.verify.scenarios import Action, Scenario, Wait
+from stepgen.verify.watchdog_run import period_cycles
 from tests.sim.kinds import KINDS
 from tests.sim.shrinking import Library
 
@@ -49,6 +61,8 @@ KINDS_OF_AXIS_CALL = {
     CallKind.READ: 5,
     CallKind.INIT: 3,
 }
+WATCHED = "uno_watchdog"
+WATCHDOG_CALLS = 25  # beside those of the motor
 OF_UPDATES = {CallKind.UPDATE_CHECK: 12, CallKind.CALLBACKS: 8}
 
 
@@ -67,13 +81,18 @@ class Arguments:
         Return calls of any kind from anywhere, each followed by a wait and a look.
         """
         actions: list[Action] = []
+        hungry = 0
         for _ in range(CALLS):
             index = self._random.randrange(len(self._plan.motors))
             motor = self._plan.motors[index]
             of_kind = self._axis_call if is_axis(motor) else self._call
             actions.append(of_kind(index, motor))
-            actions.append(Wait(int(2 ** self._random.uniform(4, 17))))
-            actions.append(Call(CallKind.READ, index))
+            wait = Wait(int(2 ** self._random.uniform(4, 17)))
+            actions += (wait, Call(CallKind.READ, index))
+            hungry += wait.cycles
+            if 0 < period_cycles(self._plan) < 2 * hungry:
+                actions.append(Call(CallKind.WATCHDOG, control=Watchdog.FEED))
+                hungry = 0
         # Whatever was said, a motor can be stopped.
         for index, motor in enumerate(self._plan.motors):
             actions.append(Call(CallKind.HALT if is_axis(motor) else CallKind.SET_SPEED, index))
@@ -87,8 +106,12 @@ class Arguments:
         changes = motor.motion.changes_speed
         timed = {CallKind.KEEP_ALIVE: 8} if motor.command_timeout_ms else {}
         weights = KINDS_OF_CALL | timed | (OF_UPDATES if changes else {})
+        if self._plan.watchdog_ms is not None:
+            weights[CallKind.WATCHDOG] = WATCHDOG_CALLS
         kind = draw.choices(list(weights), list(weights.values()))[0]
         context = draw.choice(self._contexts(changes=changes))
+        if kind is CallKind.WATCHDOG:
+            return Call(kind, control=draw.choice([*Watchdog, *Watchdog, 0xFF]), context=context)
         if kind is CallKind.CALLBACKS:
             return Call(
                 kind, index, draw.choice([3, 3, 1, 2, 0]), context=context
@@ -156,9 +179,26 @@ def test_any_argument_ends_in_a_documented_state(stem: str, seed: int) -> None:
     library.must_pass(Arguments(seed, library.plan).scenario(f"arguments {seed}"))
 
 
+@pytest.mark.parametrize("seed", [FIRST_SEED, FIRST_SEED + 1])
+def test_the_watchdog_is_called_from_anywhere(seed: int) -> None:
+    """
+    Started, started again, fed and asked in any order: no motor notices, nothing is reset.
+    """
+    library = Library.of(WATCHED)
+    scenario = Arguments(seed, library.plan).scenario(f"watchdog {seed}")
+    outcome = run_scenario(library.loaded, library.plan, library.elf, scenario)
+    made = [one for one in outcome.answers if one.call.kind is CallKind.WATCHDOG]
+
+    assert outcome.findings == ()
+    assert len(made) > WATCHDOG_CALLS
+    assert {one.call.control for one in made} == {*Watchdog, 0xFF}
+    assert {one.result for one in made} == {0}
+    assert not (outcome.trace.events["kind"] == Kind.RESET).any()
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(FIRST_SEED + 2, FIRST_SEED + 2 + CAMPAIGN_SEEDS))
-@pytest.mark.parametrize("stem", KINDS)
+@pytest.mark.parametrize("stem", [*KINDS, WATCHED])
 def test_a_campaign_of_any_arguments(stem: str, seed: int) -> None:
     """
     Thousands more for each kind of spec, each seed repeatable.

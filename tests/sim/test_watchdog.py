@@ -7,6 +7,7 @@ The period of 250 ms is that of 32768 ticks of the oscillator, 128 kHz (ATmega32
 
 import re
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -26,6 +27,7 @@ STEM = "uno_watchdog"
 PERIOD_CYCLES = 4_096_000
 SECOND_CYCLES = 16_000_000
 WDTCSR, WDE = 0x60, 0x08
+BROWN_OUT = 0x04  # the bit BORF of MCUSR
 FED, BACK = 0x21, 0x22  # marks of the sketches below
 
 HEADER = """
@@ -159,6 +161,26 @@ def test_what_a_boot_loader_has_cleared_nobody_knows(
     machine.run_until(SECOND_CYCLES // 10)
 
     assert len(cycles_of(machine, Kind.MARK, fired & 0xFF)) == 1
+
+
+def test_a_brown_out_is_not_taken_for_the_watchdog(machine_with: MachineWith) -> None:
+    """
+    The watchdog is on as the supply breaks down: it is off afterwards, and has not fired.
+    """
+    sketch = (
+        "void setup() { EEDR = 0x40 | motorWatchdogFired(); motorWatchdogStart(); } void loop() {}"
+    )
+    machine = machine_with(STEM, HEADER + sketch)
+    machine.run_until(PERIOD_CYCLES // 2)
+    assert machine.register(WDTCSR) & WDE
+
+    machine.reset(BROWN_OUT)
+    machine.write_ram(0x100, Random(1).randbytes(2048))  # noqa: S311 - repeatable, not secret
+    assert not machine.register(WDTCSR) & WDE
+    machine.run_until(PERIOD_CYCLES)
+
+    assert len(cycles_of(machine, Kind.MARK, 0x40)) == 2
+    assert len(cycles_of(machine, Kind.RESET)) == 1
 
 
 @pytest.mark.parametrize("period_ms", WATCHDOG_MS)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from stepgen.devices import Board, Pin, boards, find_board
-from stepgen.verify.recipes import Target, platform_dir
+from stepgen.verify.recipes import Target, board_properties, platform_dir
 
 # RXDn and TXDn, from the datasheets' chapters "Alternate Port Functions".
 MEGA_SERIAL_PINS = {
@@ -299,3 +299,14 @@ def test_boards_that_reset_for_ever_are_those_whose_boot_loader_leaves_the_watch
 
     assert paths or board.mcu.name == "atmega32u4"
     assert board.may_reset_for_ever == any(not WRITES_WDTCSR.search(text) for text in listings)
+
+
+def test_a_brown_out_resets_every_board(board: Board) -> None:
+    """
+    The fuses that the core burns do not switch the detector off: BODLEVEL is not 111.
+
+    Datasheets, table "Extended Fuse Byte" of the ATmega328P, 32U4, 1280 and 2560: bits 2 to 0.
+    """
+    fuses = board_properties(Target.from_fqbn(board.fqbn))["bootloader.extended_fuses"]
+
+    assert int(fuses, 16) & 0b111 != 0b111

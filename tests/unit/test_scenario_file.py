@@ -114,6 +114,7 @@ def test_bits_have_names_and_what_the_library_lacks_is_a_number() -> None:
         ("{call: hold, motor: roll}", "roll", "is no motor of this spec; it has pan, tilt"),
         ("{call: hold, top: 3}", "3", "top is no argument of hold; it has motor"),
         ("{call: clocks_per_second, top: 3}", "3", "of clocks_per_second; it has none"),
+        ("{call: watchdog}", "watchdog", "there is no watchdog; give the spec `watchdog_ms`"),
         ("{call: divide_clock, control: [FAULT]}", "FAULT", "bit of divide_clock; write a number"),
         ("{call: jump}", "jump", "write 'set_speed', "),
         ("{wait_ms: 1, wait_clocks: 2}", "{wait", "write call, wait_ms or wait_clocks"),

@@ -50,7 +50,7 @@ class Machine(Loaded):
         super().__init__(elf)
         self._fine = False
         self._ports = {port.pin.address: port.port.address for port in chip.ports}
-        self.cycle = 0
+        self._cycle = 0
         self._driver = Driver()
         self._driver.ask(
             "open",
@@ -72,6 +72,13 @@ class Machine(Loaded):
         driver: Driver | None = getattr(self, "_driver", None)
         if driver:
             driver.close()
+
+    @property
+    def cycle(self) -> int:
+        """
+        CPU clocks since reset.
+        """
+        return self._cycle
 
     @property
     def fine(self) -> bool:
@@ -105,7 +112,7 @@ class Machine(Loaded):
 
     def _run(self, until: int, mark: int) -> bool:
         done = self._driver.ask("run", until=until, mark=mark)
-        self.cycle = int(done["cycle"])
+        self._cycle = int(done["cycle"])
         if done["error"]:
             where = f"cycle {self.cycle}, PC {done['pc']:#x}"
             reason = done["error"]

@@ -11,7 +11,7 @@ enum event_kind {
     EVENT_MASKED = 7,    /* the main program cleared the I flag (fine recording only) */
     EVENT_UNMASKED = 8,  /* the main program set the I flag (fine recording only) */
     EVENT_RAISE = 9,     /* source: vector of a timer but 0; value: 1 if already raised */
-    EVENT_RESET = 10     /* the watchdog; source: MCUSR; value: what it holds from then on */
+    EVENT_RESET = 10     /* source: MCUSR; value: what it holds from then on */
 };
 
 typedef struct {
@@ -34,6 +34,8 @@ const char *machine_error(const machine *m);
 
 int machine_watch(machine *m, uint16_t address);
 int machine_run(machine *m, uint64_t until, int wanted_mark);
+int machine_run_to_zero(machine *m, uint16_t address, uint64_t step, uint64_t until);
+void machine_reset(machine *m, int cause);
 uint64_t machine_cycle(const machine *m);
 uint32_t machine_pc(const machine *m);
 void machine_set_fine(machine *m, int on);

@@ -1,4 +1,4 @@
-/* The chip: made from simavr's parts, and made again by the watchdog's reset. */
+/* The chip: made from simavr's parts, and made again by each reset. */
 
 #include <simavr/avr_extint.h>
 #include <stdio.h>
@@ -88,8 +88,8 @@ static void let_go(machine *m)
         }
 }
 
-/* The watchdog's reset: registers have their initial values, RAM and flash are as they were. */
-void machine_reset(machine *m)
+/* Registers have their initial values, RAM and flash are as they were. MCUSR gets the bit *cause*. */
+void machine_reset(machine *m, int cause)
 {
     avr_t *before = m->avr, *after = make_chip(before->mmcu, before->frequency);
     if (!after) {
@@ -97,7 +97,7 @@ void machine_reset(machine *m)
         return;
     }
     uint64_t cycle = before->cycle;
-    uint8_t causes = before->data[ADDRESS_MCUSR] | WDRF_MASK;
+    uint8_t causes = (uint8_t)(before->data[ADDRESS_MCUSR] | cause);
     let_go(m);
     machine_record(m, EVENT_RESET, cycle, ADDRESS_MCUSR, causes);
     memcpy(after->flash, before->flash, before->flashend + 1u);

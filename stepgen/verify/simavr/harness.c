@@ -126,13 +126,25 @@ int machine_run(machine *m, uint64_t until, int wanted_mark)
     while (!m->stop) {
         wait = round_of(m, wait);
         if (m->reset_due) {
-            machine_reset(m);
+            machine_reset(m, WDRF_MASK);
             wait = prepare(m);
         }
     }
     avr_cycle_timer_cancel(m->avr, on_until, m);
     outputs_catch_up(m, m->avr->cycle);
     return m->error[0] ? RUN_FAILED : m->marked ? RUN_MARKED : RUN_REACHED;
+}
+
+/* RUN_MARKED once the byte at *address* is 0: it is looked at each *step* cycles. */
+int machine_run_to_zero(machine *m, uint16_t address, uint64_t step, uint64_t until)
+{
+    while (m->avr->data[address]) {
+        if (m->avr->cycle > until)
+            return RUN_REACHED;
+        if (machine_run(m, m->avr->cycle + step, -1) == RUN_FAILED)
+            return RUN_FAILED;
+    }
+    return RUN_MARKED;
 }
 
 uint64_t machine_cycle(const machine *m)

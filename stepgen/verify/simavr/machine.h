@@ -103,7 +103,6 @@ event *machine_record(machine *m, uint16_t kind, uint64_t cycle, uint16_t source
 void machine_fail(machine *m, const char *format, ...);
 
 /* chip.c: what a reset by the watchdog makes of it, between two instructions. */
-void machine_reset(machine *m);
 
 /* An interrupt may have become pending: look after the current instruction. */
 void machine_attend(machine *m);
