@@ -8,6 +8,7 @@ from textwrap import fill
 
 from stepgen.library.api_view import api_name, api_names, init_name
 from stepgen.library.example_speeds import Ramp, example_speed_sps
+from stepgen.library.motor_view import period_type
 from stepgen.library.text import comment_lines, listed
 from stepgen.plan.model import MotorPlan, Plan
 
@@ -104,6 +105,7 @@ class ConsoleKind:
     ramps: tuple[Ramp, ...]
     rows: tuple[ConsoleRow, ...]
     speed_sps: int
+    period_type: str
 
 
 @dataclass(frozen=True)
@@ -172,6 +174,7 @@ def _kind(plan: Plan, api: str, ramps: Sequence[Ramp]) -> ConsoleKind:
             for motor in motors
         ),
         speed_sps=example_speed_sps(plan),
+        period_type=period_type(plan),
     )
 
 

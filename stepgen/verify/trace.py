@@ -17,7 +17,7 @@ _CLOCK_SELECT = 0b111
 _SKETCH_VECTOR = "TIMER0_COMPA_vect"  # where the bench makes the calls of `Context.INTERRUPT`
 _COUNTER_STATES = 1 << 16
 _FRAME_CYCLES = 2
-"""Interrupts are off so long where the compiler moves the stack pointer; in the library, longer."""
+"""Interrupts are off so long where the compiler moves the stack pointer, and nowhere else."""
 
 
 class PortState(NamedTuple):
@@ -150,7 +150,7 @@ class Trace:
         return [
             start
             for start, place in zip(masked, places, strict=True)
-            if place == len(self.unmasked) or self.unmasked[place] - start > _FRAME_CYCLES
+            if place == len(self.unmasked) or self.unmasked[place] - start != _FRAME_CYCLES
         ]
 
     def _writes(self, first: int, last: int) -> tuple[PortState, ...]:

@@ -138,8 +138,8 @@ def test_a_measurement_over_its_bound_is_noticed(shield: SpecReport) -> None:
     ("old", "new", "why"),
     [
         (
-            "    motion.endMillis += 0x4000;",
-            "    motion.endMillis += 0x4000; __builtin_avr_delay_cycles(100);",
+            "  motion.endMillis += 0x4000;",
+            "  motion.endMillis += 0x4000; __builtin_avr_delay_cycles(100);",
             "a step interrupt can take",
         ),
         (

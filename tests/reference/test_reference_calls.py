@@ -197,7 +197,7 @@ def test_a_service_before_its_deadline_is_refused() -> None:
     "make",
     [
         lambda: SetSpeed(0, 256, 1000),
-        lambda: SetSpeed(0, 0x80, 1 << 32),
+        lambda: SetSpeed(0, 0x80, 1 << 64),
         lambda: SetSpeed(0, 0x80, 1000, -1),
         lambda: ClockOn(0, 2, 0),
         lambda: ClockOn(0, 1, 65_536),

@@ -97,7 +97,7 @@ def _speeds(spec: Trapezoid, scale: Mapping[str, Fraction], faults: Faults) -> _
         return None
     if cruise > _MOST_SPS:
         faults.at("cruise_speed").report(
-            f"{float(cruise):g} steps/s is out of range; {_MOST_SPS} are the most"
+            f"{float(cruise):g} steps/s is out of range; take {_MOST_SPS} or less"
         )
         return None
     if start >= cruise:

@@ -11,13 +11,15 @@ STATED_ROUNDS = {
     "__udivmodqi4_ep": 9,
     "__udivmodhi4_ep": 17,
     "__udivmodsi4_ep": 33,
+    "__lshrdi3": 9,
     "chooseSetting": 7,
     "motorTimerGetIOclocksPerSecond": 16,
 }
 """
 How often loops go round that do not say so themselves, by the label at their head or their
 function. libgcc's divisions: once for each bit of the dividend, and once more for the last bit of
-the quotient (libgcc, config/avr/lib1funcs.S). chooseSetting: it shifts by 6 bits at
+the quotient (libgcc, config/avr/lib1funcs.S); its shift of 64 bits, by 63 at most:
+once for each byte, then for each bit. chooseSetting: it shifts by 6 bits at
 most, one each time, and looks once more whether any is left; motorTimerGetIOclocksPerSecond
 likewise, by the 15 that four bits of CLKPR can hold.
 """

@@ -16,7 +16,9 @@ from stepgen.verify.bounds.search import Search, Way
 
 _SREG_IO = 0x3F
 # The library's guard. Where link-time optimisation has put one of its functions into a sketch, a
-# line of the guard can be taken for one of the sketch; its name stays.
+# line of the guard, or all lines of the function, can be taken for the sketch's; the guard's name
+# stays. No sketch of the bench and no example switches interrupts off itself.
+_SKETCH = re.compile(r"bench\.cpp|\w+\.ino\.cpp")
 _GUARD = re.compile(r"_ZN6MaskedC\dEv|Masked::Masked\(.*\)|Masked::Masked")
 
 
@@ -68,9 +70,12 @@ class MaskedSections:
         return [
             line
             for line in self._program.lines.values()
-            if line.name == "cli"
-            and (line.source.split(":")[0] == self._source or _GUARD.fullmatch(line.scope))
+            if line.name == "cli" and self._is_of_library(line)
         ]
+
+    def _is_of_library(self, line: Line) -> bool:
+        file = line.source.split(":")[0]
+        return bool(file == self._source or _SKETCH.fullmatch(file) or _GUARD.fullmatch(line.scope))
 
     def _reach(self, start: Line) -> Reach:
         """

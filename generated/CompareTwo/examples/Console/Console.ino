@@ -123,7 +123,7 @@ static void turn(Motor &motor, int32_t speed) {
   const int8_t result = motor.setSpeed(controlFor(speed), intervalFor(speed), 0);
   if (result == MOTOR_ERROR_TOO_FAST) {
     Serial.print(F("too fast: at most "));
-    Serial.println(F_CPU / MOTOR_MIN_TOP);
+    Serial.println(static_cast<uint32_t>(F_CPU / MOTOR_MIN_TOP));
     return;
   }
   if (result == 0) motor.interval = intervalFor(speed);

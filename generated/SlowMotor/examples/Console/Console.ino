@@ -17,8 +17,8 @@ static const char kHelp[] PROGMEM =
 // What can be asked of a motor.
 struct Motor {
   const char *name;
-  uint32_t interval;  // I/O clocks between two steps of the next motion
-  int8_t (*setSpeed)(uint8_t control, uint32_t interval, uint32_t limit);
+  uint64_t interval;  // I/O clocks between two steps of the next motion
+  int8_t (*setSpeed)(uint8_t control, uint64_t interval, uint32_t limit);
   uint8_t (*readStatus)();
   int32_t (*readPosition)();
   int8_t (*hold)();
@@ -106,7 +106,7 @@ static uint8_t controlFor(int32_t number) {
 
 // The I/O clocks between two steps at that many steps per second; 1, which is refused, for more
 // than motorTimerCalcPerSecond() takes.
-static uint32_t intervalFor(int32_t speed) {
+static uint64_t intervalFor(int32_t speed) {
   return magnitude(speed) > 65535 ? 1 : motorTimerCalcPerSecond(magnitude(speed));
 }
 
@@ -115,7 +115,7 @@ static void turn(Motor &motor, int32_t speed) {
   const int8_t result = motor.setSpeed(controlFor(speed), intervalFor(speed), 0);
   if (result == MOTOR_ERROR_TOO_FAST) {
     Serial.print(F("too fast: at most "));
-    Serial.println(F_CPU / MOTOR_MIN_TOP);
+    Serial.println(static_cast<uint32_t>(F_CPU / MOTOR_MIN_TOP));
     return;
   }
   if (result == 0) motor.interval = intervalFor(speed);
