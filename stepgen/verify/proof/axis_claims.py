@@ -8,7 +8,16 @@ from typing import Any
 
 import z3
 
-from stepgen.verify.proof.axis_state import ENDLESS, REVERSE, RUNNING, TURNING, AxisState
+from stepgen.verify.proof.axis_state import (
+    CLIMB,
+    DESCEND,
+    ENDLESS,
+    REVERSE,
+    RUNNING,
+    TURNING,
+    AxisState,
+)
+from stepgen.verify.proof.numbers import BITS, wide
 
 TOO_FAST, RUNS, QUEUE_FULL = -1, -5, -6
 _FAR = 1 << 30
@@ -23,7 +32,7 @@ class AxisWay:
 
     Args:
         spec: The shortest interval of the spec, and how high the motor climbs for it.
-        height: What ``...HeightFor`` returns for the interval that a call names.
+        height: What ``heightFor`` returns for the interval that a call names.
     """
 
     before: AxisState
@@ -73,7 +82,7 @@ def move_to(way: AxisWay) -> Said:
     """
     Yield what must hold after ``...MoveTo``.
     """
-    yield from _goes_to(way, way.before.of("origin") + way.arguments[0])
+    yield from _goes_to(way, way.arguments[0])
     yield "it ends", z3.Not(way.after.is_in(ENDLESS))
     yield "it is never refused", way.result == 0
 
@@ -117,7 +126,9 @@ def stop(way: AxisWay) -> Said:
     before, after = way.before, way.after
     yield "it runs on if it ran", after.is_in(RUNNING) == before.is_in(RUNNING)
     yield "it ends where it comes to rest", z3.Not(after.is_in(ENDLESS | TURNING))
-    rest = z3.ZeroExt(24, after.of("height")) + z3.ZeroExt(32, after.count)
+    level = before.ramp.height(before.of("row"), before.level)
+    flat = z3.Not(before.is_in(DESCEND))
+    rest = wide(level) + z3.If(flat, _one(BITS), wide(before.count))
     yield "as soon as it can", z3.Implies(after.is_in(RUNNING), after.left == rest)
     yield "there it is to be", after.target == after.of("end")
 
@@ -142,8 +153,28 @@ def set_speed(way: AxisWay) -> Said:
     yield "then nothing changes", z3.Implies(refused, _same(way))
     taken = z3.And(after.of("cruise") == way.arguments[0], after.of("goal") == way.height)
     yield "else the interval holds, and how high it climbs for it", z3.Or(refused, taken)
-    yield "what is left stays", after.left == before.left
-    yield "the end stays", after.of("end") == before.of("end")
+    yield "what is left stays, or is far away", _is_left(way, before.left)
+    runs = z3.And(before.is_in(RUNNING), z3.Not(refused))
+    number = before.ramp.height(before.of("row"), before.level)
+    climbs = z3.And(before.is_in(CLIMB), z3.ULT(number, way.height))
+    yield "it climbs on below that height", z3.Implies(runs, after.is_in(CLIMB) == climbs)
+    same = z3.Or(climbs, before.is_in(DESCEND))
+    count = z3.If(same, before.count, _one(8))
+    yield (
+        "it goes on with its level, or ends it with the next step",
+        z3.Implies(runs, z3.And(after.count == count, after.of("levels") == 0)),
+    )
+
+
+def _is_left(way: AxisWay, left: Any) -> Any:  # noqa: ANN401
+    """
+    Tell whether so many steps are *left*; without an end it may have been put off, as far as kFar.
+    """
+    before, after = way.before, way.after
+    same = z3.And(after.left == left, after.of("end") == before.of("end"))
+    ahead = z3.If(before.is_in(REVERSE), -_FAR, z3.BitVecVal(_FAR, 32))
+    far = z3.And(after.left == left + _FAR, after.of("end") == before.of("end") + ahead)
+    return z3.Or(same, z3.And(before.is_endless, far))
 
 
 def queue_move_to(way: AxisWay) -> Said:
@@ -151,7 +182,7 @@ def queue_move_to(way: AxisWay) -> Said:
     Yield what must hold after ``...QueueMoveTo``.
     """
     before, after = way.before, way.after
-    destination = before.of("origin") + way.arguments[0]
+    destination = way.arguments[0]
     running, endless = before.is_in(RUNNING), before.is_in(ENDLESS)
     again = z3.And(running, destination == before.target)
     full = z3.And(running, before.queued == before.places)
@@ -168,7 +199,7 @@ def init(way: AxisWay) -> Said:
     Yield what must hold after ``...Init``.
     """
     after = way.after
-    yield "the position is 0", after.position == after.of("origin")
+    yield "the position is 0", after.position == 0
     yield "it rests", z3.Not(after.is_in(RUNNING))
     yield "it cruises as the spec says", after.of("cruise") == way.spec[0]
     yield "as high as that", after.of("goal") == way.spec[1]
@@ -180,7 +211,7 @@ def current_position(way: AxisWay) -> Said:
     """
     Yield what must hold of the result of ``...CurrentPosition``.
     """
-    yield "the position", way.result == way.before.position - way.before.of("origin")
+    yield "the position", way.result == way.before.position
     yield "nothing changes", _same(way)
 
 
@@ -196,7 +227,7 @@ def target_position(way: AxisWay) -> Said:
     """
     Yield what must hold of the result of ``...TargetPosition``.
     """
-    yield "the target", way.result == way.before.target - way.before.of("origin")
+    yield "the target", way.result == way.before.target
     yield "nothing changes", _same(way)
 
 
@@ -228,9 +259,8 @@ def set_current_position(way: AxisWay) -> Said:
     """
     Yield what must hold after ``...SetCurrentPosition``.
     """
-    yield from _stays(way)
     yield from _only_at_rest(way)
-    named = way.after.position - way.after.of("origin") == way.arguments[0]
+    named = z3.And(way.after.position == way.arguments[0], way.after.target == way.arguments[0])
     yield "the place has that number", z3.Or(way.before.is_in(RUNNING), named)
 
 
@@ -246,6 +276,13 @@ def _only_at_rest(way: AxisWay) -> Said:
     running = way.before.is_in(RUNNING)
     yield "it refuses while it runs", way.result == z3.If(running, _code(RUNS), _code(0))
     yield "then nothing changes", z3.Implies(running, _same(way))
+
+
+def passed(way: AxisWay) -> Said:
+    """
+    Yield what must hold of ``...Passed``, a part of the step interrupt's rare ways.
+    """
+    yield "nothing changes", _same(way)
 
 
 def boundary(way: AxisWay) -> Said:
@@ -278,16 +315,6 @@ def boundary(way: AxisWay) -> Said:
     yield "the target stays", z3.Or(before.is_in(ENDLESS), after.target == before.target)
 
 
-def boundary_late(way: AxisWay) -> Said:
-    """
-    Yield what must hold after an interrupt that finds the next step due already.
-    """
-    yield from _stays(way)
-    more = way.after.of("missed") - way.before.of("missed")
-    yield "one is missed at most", z3.ULE(more, 1)
-    yield "what is left stays", way.after.left == way.before.left
-
-
 def _code(number: int) -> Any:  # noqa: ANN401
     return z3.BitVecVal(number, 8)
 
@@ -315,7 +342,7 @@ AXIS_CLAIMS: dict[str, Callable[[AxisWay], Said]] = {
     "SetCurrentPosition": set_current_position,
     "EnableOutputs": outputs,
     "DisableOutputs": outputs,
+    "Passed": passed,
     "boundary": boundary,
-    "boundary_late": boundary_late,
 }
 """The claims by function, without the axis's name."""

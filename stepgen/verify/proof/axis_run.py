@@ -2,6 +2,7 @@
 One way after the other through a function of an axis, or through a part of one.
 """
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -9,14 +10,7 @@ from typing import Any
 import z3
 
 from stepgen.verify.proof.axis_claims import AXIS_CLAIMS, AxisWay
-from stepgen.verify.proof.axis_parts import (
-    PARTS,
-    Part,
-    goes_on,
-    row_of,
-    share_of,
-    whole_levels,
-)
+from stepgen.verify.proof.axis_parts import PARTS, Call, Part, goes_on
 from stepgen.verify.proof.axis_state import (
     CLIMB,
     COAST,
@@ -30,7 +24,7 @@ from stepgen.verify.proof.integers import U16, integer
 from stepgen.verify.proof.library import Library
 from stepgen.verify.proof.machine import Machine
 from stepgen.verify.proof.memory import GENERAL_PURPOSE, Place
-from stepgen.verify.proof.operands import Pointer
+from stepgen.verify.proof.operands import Frame, Pointer, is_pointer
 from stepgen.verify.proof.paths import Paths
 from stepgen.verify.proof.ramp import LENGTHS, Ramp
 
@@ -43,17 +37,22 @@ _MOVES = {
 }
 """What changes a way while the axis is on it: too much for z3 unless each mode has its ways."""
 
+_CUTS = {"SetSpeed"}
+"""Of those what changes the present level by itself: each length of one has its ways, too."""
+
+_OTHERS = ("heightFor", "slopeOf", "levelsIn")
+_DECIDES = re.compile(r"\bdecide \(\w+, &(\w+)\)")
+
 
 def axis_entries(library: Library, motor: str) -> list[str]:
     """
     Return the functions by which a sketch or an interrupt gets at the axis *motor*, and its parts.
     """
     names = [
-        f"{_VECTOR}{motor}_{name}" if name.startswith("boundary") else motor + name
-        for name in (*AXIS_CLAIMS, *PARTS, "HeightFor")
+        f"{_VECTOR}{motor}_{name}" if name == "boundary" else motor + name for name in AXIS_CLAIMS
     ]
-    found = (name for name in names if name in library.functions)
-    return [*found, "readRow", "levelsIn", _BY_ITSELF]
+    found = (name for name in (*names, *PARTS, *_OTHERS) if name in library.functions)
+    return [*found, _BY_ITSELF]
 
 
 @dataclass
@@ -70,6 +69,7 @@ class AxisRun:
     _calls: int = 0
     _names: dict[int, tuple[Any, Any]] = field(default_factory=dict)
     _ramp: Ramp = field(init=False)
+    _table: str = field(init=False)
     _machine: Machine = field(init=False)
 
     def __post_init__(self) -> None:
@@ -79,6 +79,9 @@ class AxisRun:
         ladder, self._cruise_256 = self.library.axes[self.motor]
         self._ramp = Ramp(ladder)
         self._goal = ladder.levels[ladder.goal(self._cruise_256)].height
+        handler = self.library.functions[f"{_VECTOR}{self.motor}_boundary"]
+        texts = (statement.text for block in handler.blocks.values() for statement in block)
+        (self._table,) = {found[1] for text in texts if (found := _DECIDES.search(text))}
 
     def once(self) -> None:
         """
@@ -94,17 +97,18 @@ class AxisRun:
         self.paths.inputs = {".".join(place): value for place, value in known.items()}
         for says in self._ramp.check():
             self._show(says, z3.BoolVal(val=False))
+        others = {
+            _BY_ITSELF: self._by_itself,
+            "heightFor": self._height_for,
+            "slopeOf": self._slope_of,
+            "levelsIn": self._levels_in,
+        }
+        if self.name in others:
+            others[self.name]()
+            return
         self._stand_in()
-        if self.name == _BY_ITSELF:
-            self._by_itself()
-        elif kind in PARTS:
+        if kind in PARTS:
             self._part(PARTS[kind])
-        elif kind == "HeightFor":
-            self._height_for()
-        elif kind == "readRow":
-            self._read_row()
-        elif kind == "levelsIn":
-            self._levels_in()
         else:
             self._whole(kind)
 
@@ -114,16 +118,14 @@ class AxisRun:
         """
         known = self._machine.known
         for name, part in PARTS.items():
-            if self.motor + name != self.name:
-                known[self.motor + name] = lambda name=name, part=part: self._known(name, part)
-        if self.name not in {"readRow", f"{self.motor}HeightFor"}:
-            known["readRow"] = self._row
-        if self.name != "levelsIn":
-            known["levelsIn"] = self._whole_levels
-        if self.name != f"{self.motor}Position":
-            known[f"{self.motor}Position"] = lambda: self._state().position
+            if name != self.name:
+                known[name] = lambda *values, name=name, part=part: self._known(name, part, values)
+        self._machine.rows[self._table] = self._of_row
+        known["slopeOf"] = self._slope
+        if self.name != f"{self.motor}Passed":
+            known[f"{self.motor}Passed"] = lambda: z3.BitVec("the moment has passed", 1)
         self._height = z3.BitVec("the height for the interval", 16)
-        known[f"{self.motor}HeightFor"] = lambda _: self._height
+        known["heightFor"] = lambda *_: self._height
 
     def _whole(self, kind: str) -> None:
         machine = self._machine
@@ -138,48 +140,44 @@ class AxisRun:
         self.paths.assume(self._ramp.is_level(self._height))
         for height in (0, self._goal):
             self.paths.assume(self._ramp.is_level(z3.BitVecVal(height, 16)))
-        if kind.startswith("boundary"):
-            before = self._interrupted(before, late=kind == "boundary_late")
+        if kind == "boundary":
+            before = self._interrupted(before)
         if kind == "Init":
             self._from_reset(before)
         else:
             self._assume(before)
             if kind in _MOVES:
-                self._split()
-                before = replace(before, values={**before.values, **self._split_values})
+                before = self._split(before, lengths=kind in _CUTS)
         result = machine.call(self.name, *arguments)
         after = self._keeps()
         spec = (self._cruise_256, self._goal)
         way = AxisWay(before, after, arguments, result, spec, self._height)
         self._show_all(AXIS_CLAIMS[kind](way))
 
-    def _split(self) -> None:
+    def _split(self, before: AxisState, *, lengths: bool) -> AxisState:
         """
-        Let each way have known modes, and levels of a known length: that is far easier to prove.
+        Let each way have a known mode, and with *lengths* levels of a known length.
+
+        That is far easier to prove.
         """
         memory, own = self._machine.memory, f"{self.motor}Motion"
-        mode, length = (memory.read((own, name)) for name in ("mode", "length"))
-        known = [mode & bit != 0 for bit in (RUNNING, CLIMB, DESCEND)]
+        known = [before.of("mode") & bit != 0 for bit in (RUNNING, CLIMB, DESCEND)]
         bits = [self.paths.decide(one) for one in known]
-        mode = _with_bits(mode, *bits)
-        self._split_values: dict[Place, Any] = {(own, "mode"): mode}
-        if bits[0]:
-            self._split_values[own, "length"] = self._one_of(length)
-        for place, value in self._split_values.items():
+        split: dict[Place, Any] = {(own, "mode"): _with_bits(before.of("mode"), *bits)}
+        if bits[0] and lengths:
+            split[own, "length"] = self._one_of(before.of("length"))
+        for place, value in split.items():
             memory.write(place, value)
+        return replace(before, values={**before.values, **split})
 
-    def _interrupted(self, entered: AxisState, *, late: bool) -> AxisState:
+    def _interrupted(self, entered: AxisState) -> AxisState:
         """
         Return what was before the step interrupt that goes on to its rare ways as *entered*.
         """
-        if late:
-            self.paths.assume(entered.is_in(RUNNING))
-            return entered
         self.paths.assume(entered.count == 0)
         self.paths.assume(entered.is_in(RUNNING | COAST))
         self.paths.assume(z3.Or(entered.of("lapsLeft") != 0, entered.of("levels") == 0))
-        values = {**entered.values, entered.count_place: z3.BitVecVal(1, 8)}
-        return replace(entered, values=values)
+        return entered.counting(z3.BitVecVal(1, 8))
 
     def _from_reset(self, before: AxisState) -> None:
         """
@@ -197,52 +195,95 @@ class AxisRun:
 
     def _part(self, part: Part) -> None:
         before = self._state()
-        for _, claim in part.needs(before):
+        arguments = self._arguments()
+        if "count" in arguments:
+            before = before.counting(arguments["count"])
+        for _, claim in part.needs(before, arguments):
             self.paths.assume(claim)
-        for fact in self._facts(before):
+        for fact in facts(before):
             self.paths.assume(fact)
-        self._machine.call(self.name)
+        if part.splits:
+            before = self._split(before, lengths=True)
+        result = self._machine.call(self.name, *arguments.values())
         after = self._state()
+        if part.counts:
+            after = after.counting(result)
         here, there = (before.of("row"), before.of("rung")), after.of("row")
         for level in (after.level, after.of("rung")):
             for pair in ((here, (there, level)), ((there, level), here)):
                 for fact in self._ramp.facts_of_two(*pair):
                     self.paths.assume(fact)
-        for fact in self._facts(after):
+        for fact in facts(after):
             self.paths.assume(fact)
-        self._show_all(part.gives(before, after))
+        self._show_all(part.gives(Call(before, after, arguments, result)))
 
-    def _known(self, name: str, part: Part) -> None:
+    def _arguments(self) -> dict[str, Any]:
+        """
+        Return the arguments of a part: the motion and the ramp of this motor, all others unknown.
+        """
+        function = self.library.functions[self.name]
+        places = {"axis": f"{self.motor}Motion", "ramp": self._table}
+        arguments = {}
+        for name in function.parameters:
+            kind = function.types[name]
+            if is_pointer(kind):
+                arguments[name] = Pointer((places[name],))
+            else:
+                arguments[name] = z3.BitVec(name, (integer(kind) or U16).bits)
+                self.paths.inputs[name] = arguments[name]
+        return arguments
+
+    def _known(self, name: str, part: Part, values: tuple[Any, ...]) -> Any:  # noqa: ANN401
         """
         Stand for *part*: show what it needs, and assume what it gives.
         """
+        function = self.library.functions[name]
+        arguments = dict(zip(function.parameters, values, strict=True))
         before, memory = self._state(), self._machine.memory
-        for fact in self._facts(before):
+        if "count" in arguments:
+            before = before.counting(arguments["count"])
+        for fact in facts(before):
             self.paths.assume(fact)
-        self._show_all(part.needs(before))
+        self._show_all(part.needs(before, arguments))
         self._calls += 1
         for one in part.changes:
-            place = before.count_place if one == "count" else (f"{self.motor}Motion", one)
+            place = (f"{self.motor}Motion", one)
             unknown = z3.BitVec(f"{one} after {name} {self._calls}", before.values[place].size())
             memory.write(place, unknown)
-        for _, claim in part.gives(before, self._state()):
+        kind = integer(function.result) or U16
+        result = z3.BitVec(f"{name} {self._calls}", kind.bits)
+        after = self._state()
+        if part.counts:
+            after = after.counting(result)
+        for _, claim in part.gives(Call(before, after, arguments, result)):
             self.paths.assume(claim)
         if "mode" in part.changes:
-            mode = memory.read((f"{self.motor}Motion", "mode"))
-            bits = [self.paths.decide(mode & bit != 0) for bit in (RUNNING, CLIMB, DESCEND)]
-            memory.write((f"{self.motor}Motion", "mode"), _with_bits(mode, *bits))
+            self._split(self._state(), lengths=False)
+        return result
 
-    def _row(self, pointer: Pointer) -> dict[tuple[str, ...], Any]:
+    def _of_row(self, name: str, number: Any) -> Any:  # noqa: ANN401 - z3 has no types
+        """
+        Return the field *name* of row *number*, as the table has it; its length is then known.
+        """
+        row = z3.simplify(z3.Extract(7, 0, number))
+        for fact in self._ramp.facts_of_row(row):
+            self.paths.assume(fact)
+        if name == "levels":
+            return self._ramp.levels(row)
+        length = self._one_of(self._ramp.steps(row)).as_long()
+        more = z3.Extract(7, 3, self._ramp.shifts(row))
+        return z3.Concat(more, z3.BitVecVal(length.bit_length() - 1, 3))
+
+    def _slope(self, pointer: Pointer, shifts: Any) -> Any:  # noqa: ANN401
         at = z3.BitVecVal(0, 16) if pointer.element is None else pointer.element
         number = z3.simplify(z3.UDiv(at, z3.BitVecVal(_ROW_BYTES, 16)))
         self._show("the beginning of a row", z3.URem(at, _ROW_BYTES) == 0)
         self._show("a row of the ramp", z3.ULT(number, self._ramp.rows))
         row = z3.simplify(z3.Extract(7, 0, number))
-        for fact in self._ramp.facts_of_row(row):
-            self.paths.assume(fact)
-        return row_of(self._ramp, row, self._ramp.steps(row))
+        self._show("the shifts of that row", shifts == self._ramp.shifts(row))
+        return self._ramp.slope(row)
 
-    def _one_of(self, length: Any) -> Any:  # noqa: ANN401 - z3 has no types
+    def _one_of(self, length: Any) -> Any:  # noqa: ANN401
         """
         Return *length* as a number: each way goes on with one of those that a level can have.
         """
@@ -251,41 +292,40 @@ class AxisRun:
                 return z3.BitVecVal(known, 8)
         return z3.BitVecVal(LENGTHS[-1], 8)
 
-    def _read_row(self) -> None:
+    def _slope_of(self) -> None:
         """
         Show that what is read of each row is what the reference model has there.
         """
         number = z3.BitVec("row", 16)
         self.paths.inputs = {"row": number}
         self.paths.assume(z3.ULT(number, self._ramp.rows))
-        read = self._machine.call("readRow", Pointer((f"{self.motor}Ramp",), number * _ROW_BYTES))
+        machine, at = self._machine, number * _ROW_BYTES
+        frame = Frame(self.library.functions[self.name], ())
+        fields = {
+            name: machine.entry(Pointer((self._table, name), at), frame)
+            for name in ("levels", "shifts")
+        }
+        shifts = fields["shifts"]
+        read = {
+            "levels": fields["levels"],
+            "stepsOf": machine.call("stepsOf", shifts),
+            "slopeOf": machine.call("slopeOf", Pointer((self._table,), at), shifts),
+        }
         for name, value in self._ramp.entries(z3.Extract(7, 0, number)):
-            self._show(f"{name} as the model has it", read[(name,)] == value)
-
-    def _whole_levels(self, steps: Any, row: Pointer) -> Any:  # noqa: ANN401 - z3 has no types
-        length = self._machine.memory.read((*row.place, "steps"))
-        levels = whole_levels(steps, length)
-        parts = z3.ZeroExt(16, levels) * z3.ZeroExt(24, length)
-        self.paths.assume(_fills(z3.ZeroExt(16, steps), parts, length))
-        return levels
+            self._show(f"{name} as the model has it", read[name] == value)
 
     def _levels_in(self) -> None:
         """
         Show that no other number of whole levels is in so many steps, for each length of a level.
         """
-        steps, shift = z3.BitVec("steps", 16), z3.BitVec("shift", 8)
-        self.paths.inputs = {"steps": steps, "shift": shift}
-        self.paths.assume(z3.ULT(shift, 8))
-        length = self._one_of(z3.BitVecVal(1, 8) << shift).as_long()
-        memory, place = self._machine.memory, ("a row",)
-        memory.declare(place, "Row")
-        memory.write((*place, "steps"), z3.BitVecVal(length, 8))
-        memory.write((*place, "share"), z3.simplify(share_of(z3.BitVecVal(length, 8))))
-        result = self._machine.call("levelsIn", steps, Pointer(place))
-        self._show("the whole levels", result == whole_levels(steps, z3.BitVecVal(length, 8)))
-        parts = z3.ZeroExt(16, result) * length
-        fills = _fills(z3.ZeroExt(16, steps), parts, z3.BitVecVal(length, 8))
-        self._show("they leave less than a level", fills)
+        steps, shifts = z3.BitVec("steps", 16), z3.BitVec("shifts", 8)
+        self.paths.inputs = {"steps": steps, "shifts": shifts}
+        result = self._machine.call("levelsIn", steps, shifts)
+        length = self._machine.call("stepsOf", shifts)
+        length = z3.ZeroExt(24, self._one_of(length))
+        parts, whole = z3.ZeroExt(16, result) * length, z3.ZeroExt(16, steps)
+        fills = z3.And(z3.ULE(parts, whole), z3.ULT(whole - parts, length))
+        self._show("so many whole levels fit, and no more", fills)
 
     def _height_for(self) -> None:
         """
@@ -294,8 +334,11 @@ class AxisRun:
         interval = z3.BitVec("interval", 32)
         self.paths.inputs = {"interval": interval}
         self.paths.assume(z3.UGE(interval, self._cruise_256))
-        result = z3.simplify(self._machine.call(self.name, interval))
-        levels = self._ramp.ladder.levels
+        ladder = self._ramp.ladder
+        rows = z3.BitVecVal(self._ramp.rows, 8)
+        first = z3.BitVecVal(ladder.first_interval_256, 32)
+        call = self._machine.call(self.name, Pointer((self._table,)), rows, first, interval)
+        result, levels = z3.simplify(call), ladder.levels
         at = {level.height: number for number, level in enumerate(levels)}
         number = at.get(result.as_long()) if z3.is_bv_value(result) else None
         self._show("the height is that of a level", z3.BoolVal(number is not None))
@@ -304,10 +347,9 @@ class AxisRun:
 
     def _by_itself(self) -> None:
         self._assume(self._state())
-        self._split()
-        before = self._state()
+        before = self._split(self._state(), lengths=True)
         for after, when in goes_on(before):
-            for fact in self._facts(after):
+            for fact in facts(after):
                 self.paths.assume(fact)
             for says, claim in invariant(after).items():
                 self._show(says, z3.Implies(when, claim))
@@ -334,16 +376,13 @@ class AxisRun:
         values = self._machine.memory.snapshot()
         return AxisState(values, self.library.source, self.motor, self._ramp, self._named)
 
-    def _facts(self, state: AxisState) -> Iterator[Any]:
-        yield from facts(state)
-
     def _assume(self, state: AxisState) -> None:
-        for claim in [*invariant(state).values(), *self._facts(state)]:
+        for claim in [*invariant(state).values(), *facts(state)]:
             self.paths.assume(claim)
 
     def _keeps(self) -> AxisState:
         after = self._state()
-        for fact in self._facts(after):
+        for fact in facts(after):
             self.paths.assume(fact)
         self._show_all(iter(invariant(after).items()))
         return after
@@ -362,10 +401,6 @@ def _with_bits(mode: Any, *known: bool) -> Any:  # noqa: ANN401 - z3 has no type
     """
     running, climb, descend = (z3.BitVecVal(bit, 1) for bit in known)
     return z3.Concat(z3.Extract(7, 7, mode), descend, climb, running, z3.Extract(3, 0, mode))
-
-
-def _fills(steps: Any, parts: Any, length: Any) -> Any:  # noqa: ANN401
-    return z3.And(z3.ULE(parts, steps), z3.ULT(steps - parts, z3.ZeroExt(24, length)))
 
 
 def _is_goal(levels: Any, number: int, interval: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401

@@ -3,8 +3,8 @@ What an axis's variables say, and what holds of them whenever no code of the lib
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import z3
 
@@ -21,7 +21,7 @@ FAR = 1 << 30
 """Steps ahead of an axis that runs without an end: kFar."""
 
 MOST_STEPS = 1 << 31
-_AT_ONCE = 1 << 15  # steps of a level and of those that follow it by themselves
+_ON_THE_WAY = 1 << 17  # two ramps, or a ramp and the steps at one speed: most of what is missing
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,12 @@ class AxisState:
         """
         return self.values[self.count_place]
 
+    def counting(self, count: Any) -> Self:  # noqa: ANN401
+        """
+        Return the same with another *count*.
+        """
+        return replace(self, values={**self.values, self.count_place: count})
+
     @property
     def following(self) -> Any:  # noqa: ANN401
         """
@@ -92,28 +98,21 @@ class AxisState:
         return self.named(self.of("end") + z3.If(self.is_in(REVERSE), left, -left))
 
     @property
-    def begun(self) -> Any:  # noqa: ANN401
-        """
-        Return how many levels the interrupt has begun by itself.
-        """
-        return self.of("planned") - self.of("levels")
-
-    @property
     def level(self) -> Any:  # noqa: ANN401
         """
         Return the number in its row of the level where the motor is.
         """
-        down = z3.If(self.is_in(DESCEND), self.of("rung") - self.begun, self.of("rung"))
-        return z3.simplify(z3.If(self.is_in(CLIMB), self.of("rung") + self.begun, down))
+        rung, levels = self.of("rung"), self.of("levels")
+        down = z3.If(self.is_in(DESCEND), rung + levels, rung)
+        return z3.simplify(z3.If(self.is_in(CLIMB), rung - levels, down))
 
     @property
     def last_level(self) -> Any:  # noqa: ANN401
         """
         Return the number of the level to which the interrupt leads by itself.
         """
-        planned = self.of("planned")
-        down = z3.If(self.is_in(DESCEND), self.of("rung") - planned, self.of("rung"))
-        return z3.simplify(z3.If(self.is_in(CLIMB), self.of("rung") + planned + 1, down))
+        rung = self.of("rung")
+        return z3.simplify(z3.If(self.is_in(CLIMB), rung + 1, rung))
 
     @property
     def is_endless(self) -> Any:  # noqa: ANN401
@@ -171,14 +170,11 @@ def facts(state: AxisState) -> Iterator[Any]:
     """
     ramp, row, rung = state.ramp, state.of("row"), state.of("rung")
     yield from ramp.facts_of_row(row)
-    for level in (state.level, state.last_level, rung):
+    for level in (state.level, rung):
         yield from ramp.facts(row, level)
-    planned, levels, length = (state.of(name) for name in ("planned", "levels", "length"))
-    for more in (state.begun, planned, planned + 1, rung):
+    for more in (state.of("levels"), rung):
         yield from ramp.facts_of_levels(row, rung, more)
     yield from ramp.facts_of_height(state.of("goal"), row)
-    parts = _steps(state.begun, length) + _steps(levels, length)
-    yield z3.Implies(z3.ULE(levels, planned), parts == _steps(planned, length))
 
 
 def invariant(state: AxisState) -> Claims:
@@ -209,6 +205,19 @@ def invariant(state: AxisState) -> Claims:
     return claims | whole | _of_queue(state)
 
 
+def many_are_left(state: AxisState) -> Any:  # noqa: ANN401 - z3 has no types
+    """
+    Tell whether steps enough are left for all that comes before the end is put off again.
+
+    A climb up to the goal takes no more from what is left than it adds to the height, a descent as
+    much from both.
+    """
+    rest = wide(state.of("rest"))
+    height = wide(state.ramp.height(state.of("row"), state.last_level))
+    above = z3.UGT(height, wide(state.of("goal")))
+    return z3.If(above, rest - height, rest + height) >= FAR - _ON_THE_WAY
+
+
 def of_way(state: AxisState) -> Claims:
     """
     Return what holds of *state* while the axis runs.
@@ -216,19 +225,17 @@ def of_way(state: AxisState) -> Claims:
     ramp, row, rung = state.ramp, state.of("row"), state.of("rung")
     climbs, descends = state.is_in(CLIMB), state.is_in(DESCEND)
     ramps = z3.Or(climbs, descends)
-    levels, planned, length = state.of("levels"), state.of("planned"), state.of("length")
+    levels, length = state.of("levels"), state.of("length")
     rest, slope = state.of("rest"), ramp.slope(row)
     there = z3.And(z3.ULT(row, ramp.rows), z3.ULE(rung, ramp.levels(row)))
-    climbed = z3.ULT(wide(rung) + wide(planned), wide(ramp.levels(row)))
-    walked = z3.And(z3.ULT(rung, ramp.levels(row)), z3.ULE(planned, rung))
+    climbed = z3.And(z3.ULT(rung, ramp.levels(row)), z3.ULE(levels, rung))
+    walked = z3.ULT(wide(rung) + wide(levels), wide(ramp.levels(row)))
     lapped = z3.UGE(state.of("interval"), LAPPED_256)
     arrives = z3.And(z3.Not(state.is_in(ENDLESS | TURNING)))
     return {
         "it climbs or it descends": z3.Not(z3.And(climbs, descends)),
         "it is on the ramp": there,
-        "the levels of the row are those of the ramp": state.of("rungs") == ramp.levels(row),
         "its height is that of the level": state.of("height") == ramp.height(row, rung),
-        "no more levels are left than there were": z3.ULE(levels, planned),
         "a level has 1 to 128 steps, a power of two": z3.Or(
             *(length == 1 << shift for shift in range(8))
         ),
@@ -250,9 +257,7 @@ def of_way(state: AxisState) -> Claims:
         ),
         "there is room to come to rest": z3.UGE(rest, _wide32(ramp.height(row, state.last_level))),
         "at most 2**31 steps are left": state.left <= MOST_STEPS,
-        "without an end, many steps are left": z3.Implies(
-            state.is_endless, z3.UGE(rest, FAR - _AT_ONCE - 256)
-        ),
+        "without an end, many steps are left": z3.Implies(state.is_endless, many_are_left(state)),
         "an interval with laps has a level of its own": z3.Implies(
             lapped, z3.And(state.count == 1, levels == 0)
         ),

@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 _HEADING = re.compile(r"^;; Function .*$", re.MULTILINE)
@@ -31,13 +32,23 @@ class Statement:
 @dataclass
 class Function:
     """
-    A function: its parameters in order, the type of each local name, and its blocks.
+    A function: its parameters in order, the type of each local name and of its result, its blocks.
     """
 
     name: str
     parameters: tuple[str, ...]
     types: dict[str, str]
+    result: str = ""
     blocks: dict[int, list[Statement]] = field(default_factory=dict)
+
+    @cached_property
+    def referred(self) -> set[str]:
+        """
+        Return the local names of which a call takes the address.
+        """
+        found = re.compile(r"&(\w+)\b(?!->)")
+        texts = (statement.text for block in self.blocks.values() for statement in block)
+        return {name for text in texts for name in found.findall(text) if name in self.types}
 
     def after(self, block: int) -> int:
         """
@@ -71,11 +82,12 @@ def _function(text: str) -> Function:
     head, _, body = text.partition("\n{\n")
     signature = [line for line in head.splitlines() if line and not line.startswith(";;")][-1]
     heading, _, listed = signature.rpartition(" (")
-    name = re.sub(r"\(.*", "", heading).split()[-1].lstrip("*&")
+    *result, name = re.sub(r"\(.*", "", heading).split()
+    name = name.lstrip("*&")
     types: dict[str, str] = {}
     parameters = [part for part in listed.rstrip(")").split(", ") if part]
     names = tuple(_declare(part, types) for part in parameters)
-    function = Function(name, names, types)
+    function = Function(name, names, types, " ".join(result))
     _read(body.rpartition("\n}")[0], function)
     return function
 

@@ -45,6 +45,7 @@ _NAMES = {
     "long unsigned int": U32,
     "int32_t": I32,
     "long int": I32,
+    "signed long": I32,
     "uint64_t": U64,
     "long long unsigned int": U64,
 }

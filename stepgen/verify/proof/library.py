@@ -101,7 +101,7 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
         steps_per_mm={
             motor.name: motor.steps_per_mm
             for motor in plan.motors
-            if motor.steps_per_mm is not None
+            if motor.steps_per_mm is not None and motor.motion.ladder is None
         },
         timeouts={
             motor.name: motor.command_timeout_ms

@@ -49,6 +49,7 @@ class Machine(Operands):
         self.calls: list[str] = []
         self.used: set[str] = set()
         self.known: dict[str, Callable[..., Any]] = {}
+        self.rows: dict[str, Callable[[str, Any], Any]] = {}
         self.masked: Callable[[], object] = lambda: None
         self.unmasked: Callable[[], object] = lambda: None
         self.named: Callable[[Any], Any] = lambda value: value
@@ -64,7 +65,7 @@ class Machine(Operands):
         function = self._functions[name]
         frame = Frame(function, (f"{name}#{next(self._frames)}",))
         for local, kind in function.types.items():
-            if scalar(kind) is None and not is_pointer(kind):
+            if local in function.referred or (scalar(kind) is None and not is_pointer(kind)):
                 self.memory.declare((*frame.place, local), kind)
         frame.values.update(zip(function.parameters, arguments, strict=True))
         return self._run(frame)
@@ -114,11 +115,14 @@ class Machine(Operands):
     def _assembly(self, text: str, frame: Frame) -> None:
         found = _LOAD.match(text)
         if found:
-            frame.values[found[1]] = self._entry(frame.values[found[2]], frame)
+            frame.values[found[1]] = self.entry(frame.values[found[2]], frame)
         elif not re.match(r'__asm__ __volatile__\("(cli)?" :  :  : "memory"', text):
             raise ValueError(f"line {frame.line}: {text}")
 
-    def _entry(self, pointer: Pointer, frame: Frame) -> Any:  # noqa: ANN401
+    def entry(self, pointer: Pointer, frame: Frame) -> Any:  # noqa: ANN401
+        """
+        Return what a table in flash has where *pointer* points.
+        """
         table, *field = pointer.place
         kind, entries = self._source.tables[table]
         index = z3.BitVecVal(0, 32)
@@ -129,6 +133,8 @@ class Machine(Operands):
             self._prove(z3.URem(index, size) == 0, "the beginning of a row", frame)
             index = z3.simplify(z3.UDiv(index, z3.BitVecVal(size, 32)))
         self._prove(z3.ULT(index, len(entries)), "an element that the table has", frame)
+        if table in self.rows:
+            return self.rows[table](field[0], index)
         bits = 16 if kind == "uint16_t" else 8
         if z3.is_bv_value(known := z3.simplify(index)):
             return z3.BitVecVal(entries[min(known.as_long(), len(entries) - 1)], bits)

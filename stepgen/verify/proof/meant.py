@@ -69,35 +69,36 @@ MEANT = {
     "++motion.missed;": "it wraps at 16 bits, as the header says",
     "motion.rest += run - 1;": _ENDLESS,
     # An axis.
-    "if (motorPassed()) ++motorMotion.missed;": "it wraps at 16 bits, as the header says",
-    "if (motorPassed() && !motion.lapsLeft) ++motion.missed;": "the same",
-    "return motion.rest + static_cast<uint16_t>(motion.levels * motion.length) + GPIOR1;": (
+    "if (motorPassed() && !lapped && !motion.lapsLeft) ++motion.missed;": (
+        "it wraps at 16 bits, as the header says"
+    ),
+    "return motion.rest + static_cast<uint16_t>(steps + count);": (
         "a motor that coasts has 1 and -1 left; else it fits, which is proven"
     ),
-    "return motion.end + (motion.mode & kReverse ? left : -left);": _MODULO,
-    "return motorPosition() - motorMotion.origin;": _MODULO,
-    "return motorTarget() - motorMotion.origin;": _MODULO,
+    "return motion.mode & kReverse ? motion.end + left : motion.end - left;": _MODULO,
+    "return motorPosition();": _MODULO,
+    "return motorTarget();": _MODULO,
     "return motorTarget() - motorPosition();": _MODULO,
-    "motion.origin = motorPosition() - position;": _MODULO,
-    "motorAim(motorPosition(), motorMotion.origin + target, 0);": _MODULO,
-    "motorAim(here, here + steps, 0);": _MODULO,
-    "motorAim(here, here + kFar, kEndless);": _MODULO,
-    "motorAim(here, here - kFar, kEndless);": _MODULO,
-    "const uint32_t destination = motion.origin + target;": _MODULO,
+    "motion.end = motion.destination = position;": _MODULO,
+    "motorAim(target, 0);": _MODULO,
+    "motorAim(motorPosition() + steps, 0);": _MODULO,
+    "motorAim(motorPosition() + kFar, kEndless);": _MODULO,
+    "motorAim(motorPosition() - kFar, kEndless);": _MODULO,
+    "const uint32_t destination = target;": _MODULO,
     "motion.end = motion.mode & kReverse ? here - steps : here + steps;": _MODULO,
     "motion.end += motion.mode & kReverse ? -kFar : kFar;": _MODULO,
     "uint32_t way = motion.destination - motion.end;": _MODULO,
+    "if (way >> 31) {": _AHEAD,
     "way = -way;": _MODULO,
     "const int32_t ahead = mode & kReverse ? here - destination : destination - here;": _AHEAD,
-    "motion.change = -row.slope;": "it is added modulo 2**32; that it is the ramp's is proven",
-    "motion.interval += motion.change;": "the same",
+    "levels = rungs - rung - 1;": "of a descent the next lines say it; that a climb fits is proven",
+    "change = -change;": "it is added modulo 2**32; that it is the ramp's is proven",
+    "pace += motion.change;": "the same",
     "uint16_t ticks = interval >> 8;": _PARTS,
     "const uint16_t fraction = motion.dueFraction + static_cast<uint8_t>(interval);": _PARTS,
     "motion.dueFraction = fraction;": "its upper bit is in the next line",
     "const uint16_t due = motion.due + ticks + (fraction >> 8);": _COUNTS,
     "motion.due += kLapTicks;": _COUNTS,
-    "motion.rest += --run;": "the carry is taken in the next line",
-    "if (motion.rest < run) ++motion.restHigh;": _ENDLESS,
 }
 
 

@@ -8,6 +8,15 @@ from typing import Any
 
 import z3
 
+_TACTICS = (
+    *("simplify", "propagate-values", "solve-eqs", "elim-uncnstr", "simplify"),
+    *("ackermannize_bv", "simplify", "bit-blast", "sat"),
+)
+
+
+_AT_ONCE = 8
+"""So many claims are asked about at once: faster than one by one, and than all together."""
+
 
 @dataclass(frozen=True)
 class Violation:
@@ -29,15 +38,15 @@ class Paths:
 
     The code is run again for each way, and asks `decide` at each fork. It must do the same each
     time it decides the same. What it claims on a way is proven at the end of the way. Where it
-    `learns`, what is proven is known to the proofs after it: that helps where each follows from the
-    one before.
+    `learns`, some of that is asked at once, and what is proven is known to the proofs after it:
+    that helps where each follows from the one before.
     """
 
     def __init__(self) -> None:
         self.violations: list[Violation] = []
         self.inputs: dict[str, Any] = {}
         self.proven = 0
-        self.possible = 0
+        self.possible = False
         self.learns = False
         self._solver = z3.Solver()
         self._claims: list[tuple[Any, str, str]] = []
@@ -100,12 +109,25 @@ class Paths:
         Show that all claims of this way hold, or note those that do not as violations.
         """
         self.proven += len(self._claims)
-        self.possible += self._possible(z3.BoolVal(val=True))
-        for claim, says, where in self._claims:
-            if not z3.is_true(claim) and self._possible(z3.Not(claim)):
+        self.possible = self.possible or self._possible_anew(z3.BoolVal(val=True))
+        claims = [one for one in self._claims if not z3.is_true(one[0])]
+        size = _AT_ONCE if self.learns else 1
+        for first in range(0, len(claims), size):
+            self._prove_some(claims[first : first + size])
+
+    def _prove_some(self, claims: list[tuple[Any, str, str]]) -> None:
+        if not self._possible_anew(z3.Not(z3.And(*(claim for claim, _, _ in claims)))):
+            self._learn(*(claim for claim, _, _ in claims))
+            return
+        for claim, says, where in claims:
+            if self._possible_anew(z3.Not(claim)):
                 self.violations.append(Violation(says, where, self._example(z3.Not(claim))))
-            elif self.learns:
-                self._solver.add(claim)
+            else:
+                self._learn(claim)
+
+    def _learn(self, *claims: Any) -> None:  # noqa: ANN401
+        if self.learns:
+            self._solver.add(*claims)
 
     def _example(self, condition: Any) -> str:  # noqa: ANN401
         self._solver.push()
@@ -115,6 +137,22 @@ class Paths:
         self._solver.pop()
         values = {name: model[value.decl()] for name, value in self.inputs.items()}
         return ", ".join(f"{name} = {value}" for name, value in values.items() if value is not None)
+
+    def _possible_anew(self, condition: Any) -> bool:  # noqa: ANN401
+        """
+        Tell whether *condition* can hold; where it `learns`, by a solver that knows nothing yet.
+
+        All that z3 does beforehand for one question alone is worth far more there than what it
+        remembers of the questions before.
+        """
+        if not self.learns:
+            return self._possible(condition)
+        solver = z3.Then(*_TACTICS).solver()
+        solver.add(*self._solver.assertions(), condition)
+        answer = solver.check()
+        if answer == z3.unknown:
+            raise RuntimeError("z3 cannot tell")
+        return bool(answer == z3.sat)
 
     def _possible(self, condition: Any) -> bool:  # noqa: ANN401
         self._solver.push()

@@ -18,6 +18,7 @@ _STEPS = z3.Function("steps", _BYTE, _BYTE)
 _SLOPE = z3.Function("slope", _BYTE, _LONG)
 _HEIGHT = z3.Function("height", _BYTE, _BYTE, _WORD)
 _INTERVAL = z3.Function("interval", _BYTE, _BYTE, _LONG)
+_SHIFTS = z3.Function("shifts", _BYTE, _BYTE)
 _IS_LEVEL = z3.Function("a level is so high", _WORD, z3.BoolSort())
 
 _MOST_STEPS = 65_000
@@ -66,6 +67,12 @@ class Ramp:
         """
         return _STEPS(row)
 
+    def shifts(self, row: Any) -> Any:  # noqa: ANN401
+        """
+        Return what the table has of *row* beside the levels and the slope, 8 bits.
+        """
+        return _SHIFTS(row)
+
     def slope(self, row: Any) -> Any:  # noqa: ANN401
         """
         Return by how much the interval changes between levels of *row*, 32 bits.
@@ -98,6 +105,7 @@ class Ramp:
         there = z3.ULT(row, self.rows)
         yield z3.Implies(there, levels != 0)
         yield z3.Implies(there, z3.Or(*(self.steps(row) == length for length in LENGTHS)))
+        yield z3.Implies(there, self.steps(row) == 1 << (self.shifts(row) & 7))
         yield z3.Implies(
             z3.ULT(row, self.rows - 1),
             z3.And(
@@ -187,9 +195,8 @@ class Ramp:
         """
         rungs = self.ladder.rungs
         yield "levels", _entry(row, [rung.levels for rung in rungs], 8)
-        yield "steps", _entry(row, [rung.steps for rung in rungs], 8)
-        yield "slope", _entry(row, [rung.slope_256 for rung in rungs], 32)
-        yield "share", _entry(row, [256 // rung.steps % 256 for rung in rungs], 8)
+        yield "stepsOf", _entry(row, [rung.steps for rung in rungs], 8)
+        yield "slopeOf", _entry(row, [rung.slope_256 for rung in rungs], 32)
 
     def check(self) -> Iterator[str]:
         """
