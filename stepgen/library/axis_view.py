@@ -56,7 +56,10 @@ def axis_view(motor: MotorPlan, need: Need | None, plan: Plan) -> AxisView | Non
             ". Row by row from the lowest speed on: the levels, the steps of each and how much "
             "shorter the interval is from one to the next."
         )
-    start = f"{float(ladder.start_sps):g}" if ladder.start_sps else "0"
+    speeds = ladder.speeds
+    how = f"{float(speeds.acceleration):g} steps/s^2"
+    if speeds.jerk is not None:
+        how = f"up to {how}, which change by {float(speeds.jerk):g} steps/s^2 in a second"
     return AxisView(
         prefix=f"k{motor.name[0].upper()}{motor.name[1:]}",
         queue=motor.motion.queue,
@@ -68,8 +71,8 @@ def axis_view(motor: MotorPlan, need: Need | None, plan: Plan) -> AxisView | Non
         rows=tuple(_row(row) for row in ladder.rows) if owner == motor.name else (),
         row_count=str(len(ladder.rows)),
         ramp_comment=comment_lines(
-            f"From {start} to {cruise_sps:.6g} steps/s at {float(ladder.acceleration):g} "
-            f"steps/s^2: {goal} steps{rows}"
+            f"From {float(speeds.start_sps):g} to {cruise_sps:.6g} steps/s at {how}: {goal} "
+            f"steps{rows}"
         ),
         start_comment=axis_start_comment(motor, need, f_cpu_hz),
         halt_comment=" The coils go off." if motor.releases_at_rest else "",

@@ -1,8 +1,7 @@
 """
 Ramps: the levels of speed that a motor climbs and descends, as a short table for its flash.
 
-Without jerk a motor that starts with speed u has after r steps the speed v(r) = sqrt(u^2 + 2 a r),
-and the step from r to r + 1 takes X(r) = 2 F / (v(r) + v(r + 1)) clocks. A *level* is an interval
+The step from r to r + 1 takes X(r) clocks, see `stepgen.plan.curves`. A *level* is an interval
 that lasts for p steps; from one level to the next the interval changes by the slope of its *row*.
 So a row of two numbers and a slope stands for hundreds of steps, and nothing is worked out while
 the motor moves but one addition for each level.
@@ -14,14 +13,16 @@ as it lies below at its ends, so that the errors of a row cancel out over its ti
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
-from math import isqrt
 
-FRACTION = 256
-"""Parts of a clock in which intervals are counted."""
+from stepgen.plan.curves import FRACTION, Curve, Speeds, plan_curve
+
+__all__ = ["FRACTION", "Ladder", "Row", "Speeds", "plan_ladder"]
 
 MOST_STEPS = 65_000
 """How long a ramp can be: its steps are counted in 16 bits."""
+
+MOST_ROWS = 255
+"""How many rows a table can have: they are numbered in 8 bits."""
 
 LONGEST_INTERVAL_CYCLES = (1 << 24) - 1
 """The longest interval: 24 bits before the point."""
@@ -36,7 +37,6 @@ _LONGEST_LEVEL_SHIFT = 7
 _LEVELS_PER_RAMP = 128  # a level is no longer than so much of the ramp below it
 _CURVE_TOLERANCE = Fraction(15, 10_000)  # how far a row's ends lie from X below its middle
 _BELOW = Fraction(2, 3)  # of that, at the ends: a parabola's mean over its chord
-_SCALE_BITS = 24
 
 
 @dataclass(frozen=True)
@@ -72,14 +72,12 @@ class Ladder:
     Args:
         first_interval_256: The interval of the lowest level, in 1/256 clocks.
         rows: Its rows, the lowest first.
-        acceleration: In steps/s^2.
-        start_sps: The speed from which the motor starts, 0 for one at rest.
+        speeds: What the spec asks for.
     """
 
     first_interval_256: int
     rows: tuple[Row, ...]
-    acceleration: Fraction
-    start_sps: Fraction
+    speeds: Speeds
 
     @property
     def steps(self) -> int:
@@ -109,49 +107,32 @@ class Ladder:
         return steps
 
 
-def plan_ladder(
-    f_cpu_hz: int, cruise_sps: Fraction, acceleration: Fraction, start_sps: Fraction
-) -> Ladder | None:
+def plan_ladder(f_cpu_hz: int, speeds: Speeds) -> Ladder | None:
     """
-    Return the ramp up to *cruise_sps*; None if it takes more than `MOST_STEPS`.
-
-    Args:
-        f_cpu_hz: Clocks in a second.
-        cruise_sps: The speed that its top reaches, above *start_sps*.
-        acceleration: In steps/s^2, above 0.
-        start_sps: The speed from which the motor starts.
+    Return the ramp of *speeds* on a chip of *f_cpu_hz*; None if it takes more than `MOST_STEPS`.
     """
-    length = -(-(cruise_sps**2 - start_sps**2) // (2 * acceleration))
+    length = -(-speeds.steps // 1)
     if length > MOST_STEPS:
         return None
-    curve = _Curve(f_cpu_hz, acceleration, start_sps, int(length) + 2 * _MOST_LEVELS)
+    curve = _Curve(plan_curve(speeds, f_cpu_hz, length + 2 * _MOST_LEVELS))
     first = curve.intervals[0]
-    target = int(f_cpu_hz * FRACTION / cruise_sps)
-    return Ladder(first, tuple(_rows(curve, first, target)), acceleration, start_sps)
+    target = int(f_cpu_hz * FRACTION / speeds.cruise_sps)
+    return Ladder(first, tuple(_rows(curve, first, target)), speeds)
 
 
 class _Curve:
     """
-    The intervals X(r) in 1/256 clocks, for each step of a ramp.
+    A curve in levels.
     """
 
-    def __init__(
-        self, f_cpu_hz: int, acceleration: Fraction, start_sps: Fraction, length: int
-    ) -> None:
-        square = start_sps**2
-        parts = square.denominator * acceleration.denominator
-        scale = 1 << 2 * _SCALE_BITS
-        first, more = int(square * parts) * scale, int(2 * acceleration * parts) * scale
-        speeds = [isqrt((first + more * r) // parts) for r in range(length + 1)]
-        doubled = 2 * f_cpu_hz * FRACTION << _SCALE_BITS
-        self.before = int(square / (2 * acceleration))
-        self.intervals = [(2 * doubled // (low + high) + 1) // 2 for low, high in pairwise(speeds)]
+    def __init__(self, curve: Curve) -> None:
+        self.intervals, self.steps, self._bases = curve.intervals, curve.steps, curve.bases
 
     def level_steps(self, r: int) -> int:
         """
         Return how many steps a level has that begins at step *r*.
         """
-        longest = (r + self.before) // _LEVELS_PER_RAMP
+        longest = self._bases[r] // _LEVELS_PER_RAMP
         if self.intervals[r] >= _SLOW_CYCLES * FRACTION or not longest:
             return 1
         return 1 << min(longest.bit_length() - 1, _LONGEST_LEVEL_SHIFT)
@@ -163,10 +144,24 @@ class _Curve:
         last = min(r + steps - 1, len(self.intervals) - 1)
         return (self.intervals[min(r, last)] + self.intervals[last]) // 2
 
+    def levels_left(self, r: int, steps: int) -> int:
+        """
+        Return how many levels of *steps* the curve has from step *r* on.
+        """
+        if self.steps is not None:
+            return -(-(self.steps - r) // steps)
+        return (len(self.intervals) - 1 - r) // steps
+
+    def goes_on(self, r: int) -> bool:
+        """
+        Tell whether it is still getting faster at step *r*.
+        """
+        return self.steps is None or r < self.steps
+
 
 def _rows(curve: _Curve, interval: int, target: int) -> Iterator[Row]:
     r = 0
-    while interval > target:
+    while interval > target and curve.goes_on(r):
         steps = curve.level_steps(r)
         row = _longest_row(curve, r, steps, interval)
         yield row
@@ -178,7 +173,7 @@ def _longest_row(curve: _Curve, r: int, steps: int, interval: int) -> Row:
     """
     Return the longest row from step *r* on whose line stays within the tolerance of the curve.
     """
-    low, high = 1, min(_MOST_LEVELS, (len(curve.intervals) - 1 - r) // steps)
+    low, high = 1, min(_MOST_LEVELS, curve.levels_left(r, steps))
     while low < high:
         middle = (low + high + 1) // 2
         low, high = (middle, high) if _fits(curve, r, steps, middle) else (low, middle - 1)
@@ -204,13 +199,22 @@ def _fits(curve: _Curve, r: int, steps: int, levels: int) -> bool:
         return False
     if curve.level_steps(end - 1) != steps:
         return False
-    return _bow(curve, r, steps, levels) <= _CURVE_TOLERANCE * curve.middle(end, steps)
+    allowed = _CURVE_TOLERANCE * curve.middle(end, steps)
+    # Where an S bends the other way the line crosses it, and is farthest at the quarters.
+    places = (levels * quarter // 4 for quarter in (1, 2, 3))
+    return all(abs(_above(curve, r, steps, levels, place)) <= allowed for place in places)
 
 
 def _bow(curve: _Curve, r: int, steps: int, levels: int) -> int:
     """
-    Return how far the line from end to end lies above the curve, where it is farthest.
+    Return how far the line from end to end lies above the curve in the middle.
+    """
+    return _above(curve, r, steps, levels, levels // 2)
+
+
+def _above(curve: _Curve, r: int, steps: int, levels: int, place: int) -> int:
+    """
+    Return how far the line from end to end lies above the curve at level *place*.
     """
     first, last = curve.middle(r, steps), curve.middle(r + levels * steps, steps)
-    half = levels // 2
-    return first - (first - last) * half // levels - curve.middle(r + half * steps, steps)
+    return first - (first - last) * place // levels - curve.middle(r + place * steps, steps)

@@ -4,11 +4,17 @@ The ramp that physics asks for, and how far a ladder is from it.
 From rest, or from a start speed v0, with the acceleration a: after r steps the speed is
 v(r) = sqrt(v0^2 + 2 * a * r), at most that of the cruise, and the next step takes
 X(r) = 2 * F / (v(r) + v(r + 1)) clocks: exactly, but in the step that reaches the cruise.
+
+With a jerk j the acceleration rises by j each second until it is a, or until half the speed is
+gained, and falls as it rose. Then the way s(t) is a polynomial of the third degree in each of three
+phases, and the times at which it comes to r and r + 1 steps, X(r) apart, are looked for by halving.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
 from math import isqrt
 
 from stepgen.reference.ladder import Ladder
@@ -19,6 +25,7 @@ WORST_ERROR = Fraction(4, 1000)
 
 _ROOT_BITS = 64
 _CLOCK_BITS = 64
+_TIME_BITS = 48
 
 
 @dataclass(frozen=True)
@@ -30,13 +37,87 @@ class Wish:
         f_cpu_hz: Clocks in a second.
         start_sps: The speed from which it begins, 0 or more, in steps/s.
         cruise_sps: The speed at which it ends.
-        acceleration: The acceleration in steps/s^2.
+        acceleration: The acceleration in steps/s^2, at most.
+        jerk: How fast it may change, in steps/s^3; None: at once.
     """
 
     f_cpu_hz: int
     start_sps: Fraction
     cruise_sps: Fraction
     acceleration: Fraction
+    jerk: Fraction | None = None
+
+    @property
+    def steps(self) -> Fraction:
+        """
+        Return the steps that it takes to come to the cruise.
+        """
+        if self.jerk is None:
+            return (self.cruise_sps**2 - self.start_sps**2) / (2 * self.acceleration)
+        bent, even = self._phases()
+        return (self.start_sps + self.cruise_sps) / 2 * (2 * bent + even)
+
+    def _phases(self) -> tuple[Fraction, Fraction]:
+        """
+        Return how many seconds the acceleration rises, as long as it falls, and how long it stays.
+        """
+        jerk = self.jerk or Fraction(0)
+        gain = self.cruise_sps - self.start_sps
+        if self.acceleration**2 <= jerk * gain:
+            bent = self.acceleration / jerk
+            return bent, gain / self.acceleration - bent
+        square = gain / jerk
+        root = isqrt((square.numerator << 2 * _ROOT_BITS) // square.denominator)
+        return Fraction(root, 1 << _ROOT_BITS), Fraction(0)
+
+    @cached_property
+    def _course(self) -> list[tuple[int, tuple[int, int, int, int]]]:
+        """
+        Return of each phase its seconds, in 2^-48, and the polynomial of the way, in 2^-64 steps.
+        """
+        jerk = self.jerk or Fraction(0)
+        bent, even = self._phases()
+        way, speed, acceleration = Fraction(0), self.start_sps, Fraction(0)
+        course = []
+        for t, change in ((bent, jerk), (even, Fraction(0)), (bent, -jerk)):
+            parts = (way, speed, acceleration / 2, change / 6)
+            one, two, three, four = (part * (1 << _ROOT_BITS) // 1 for part in parts)
+            course.append((int(t * (1 << _TIME_BITS)), (one, two, three, four)))
+            way += speed * t + acceleration * t**2 / 2 + change * t**3 / 6
+            speed += acceleration * t + change * t**2 / 2
+            acceleration += change * t
+        last = (way * (1 << _ROOT_BITS) // 1, speed * (1 << _ROOT_BITS) // 1, 0, 0)
+        return [*course, (1 << 128, last)]
+
+    def _way(self, time: int) -> int:
+        """
+        Return the steps, in 2^-64, that are made after so many seconds, in 2^-48.
+        """
+        course = iter(self._course)
+        length, (way, speed, half, sixth) = next(course)
+        while time > length:
+            time -= length
+            length, (way, speed, half, sixth) = next(course)
+        cubic = ((sixth * time >> _TIME_BITS) + half) * time >> _TIME_BITS
+        return way + ((cubic + speed) * time >> _TIME_BITS)
+
+    def _moments(self) -> Iterator[Fraction]:
+        """
+        Yield the seconds, cut off to 2^-48, after which each number of steps is made, without end.
+        """
+        low, wanted = 0, 0
+        step = 1 << _TIME_BITS
+        while True:
+            yield Fraction(low, 1 << _TIME_BITS)
+            wanted += 1 << _ROOT_BITS
+            high = low + 2 * step
+            while self._way(high) < wanted:
+                high += high - low
+            before = low
+            while high - low > 1:
+                middle = (low + high) // 2
+                low, high = (middle, high) if self._way(middle) < wanted else (low, middle)
+            step = low - before
 
     def speed(self, steps: int) -> Fraction:
         """
@@ -52,6 +133,9 @@ class Wish:
         """
         Yield the interval after each number of steps, in clocks, without end.
         """
+        if self.jerk is not None:
+            for before, after in pairwise(self._moments()):
+                yield self.f_cpu_hz * (after - before)
         steps, speed = 0, self.speed(0)
         while True:
             following = self.speed(steps + 1)
@@ -93,7 +177,7 @@ def errors(ladder: Ladder, cruise_256: int, wish: Wish) -> Errors:
     worst = Fraction(0)
     ideal_256 = real_256 = 0
     steps = 0
-    square = (wish.cruise_sps**2 - wish.start_sps**2) / (2 * wish.acceleration)
+    square = wish.steps
     real = _climbed(ladder, cruise_256)
     climb = ladder.levels[ladder.goal(cruise_256)].height
     for steps, (wanted, made) in enumerate(zip(wish.intervals(), real, strict=False)):

@@ -1,5 +1,5 @@
 """
-Speeds and accelerations in the units of what the motor moves: steps, millimetres, degrees, turns.
+Speeds, accelerations and jerks: in steps, or in millimetres, degrees or turns of what moves.
 """
 
 import re
@@ -12,13 +12,13 @@ from stepgen.spec.turns import as_ratio
 
 Unit = Literal["steps", "mm", "deg", "turns"]
 
-_WORDS = re.compile(r"(?P<number>\S+) *(?P<unit>steps|mm|deg|turns)(?P<per>/s(\^2)?)")
+_WORDS = re.compile(r"(?P<number>\S+) *(?P<unit>steps|mm|deg|turns)(?P<per>/s(\^[23])?)")
 
 
 @dataclass(frozen=True)
 class Quantity:
     """
-    A number of a unit per second, or per second squared: exactly as it was written.
+    A number of a unit per second, per second squared or cubed: exactly as it was written.
     """
 
     number: Fraction
@@ -52,8 +52,15 @@ def _acceleration(value: Any) -> Quantity:  # noqa: ANN401 - whatever the YAML h
     return _quantity(value, "/s^2")
 
 
+def _jerk(value: Any) -> Quantity:  # noqa: ANN401 - whatever the YAML held
+    return _quantity(value, "/s^3")
+
+
 Speed = Annotated[Quantity, short_form(_speed, int | float | str)]
 """A positive speed: a number of steps per second, or such as ``50 mm/s``."""
 
 Acceleration = Annotated[Quantity, short_form(_acceleration, int | float | str)]
 """A positive acceleration: a number of steps/s^2, or such as ``500 mm/s^2``."""
+
+Jerk = Annotated[Quantity, short_form(_jerk, int | float | str)]
+"""A positive jerk: a number of steps/s^3, or such as ``2000 mm/s^3``."""

@@ -26,11 +26,11 @@ def judge_ramps(loaded: LoadedSpec, plan: Plan, report: SpecReport) -> None:
         if ladder is None:
             continue
         asked: Any = loaded.spec.motors[planned.name].motion
-        start, cruise, acceleration = (
+        start, cruise, acceleration, jerk = (
             wanted.number * _steps_in(wanted.unit, planned) if wanted else Fraction(0)
-            for wanted in (asked.start_speed, asked.cruise_speed, asked.acceleration)
+            for wanted in (asked.start_speed, asked.cruise_speed, asked.acceleration, asked.jerk)
         )
-        wish = Wish(plan.board.f_cpu_hz, start, cruise, acceleration)
+        wish = Wish(plan.board.f_cpu_hz, start, cruise, acceleration, jerk or None)
         found = errors(ladder, planned.motion.cruise_interval_256, wish)
         findings = tuple(_findings(found.speed, found.time))
         report.check(

@@ -157,6 +157,7 @@ def axis(draw: st.DrawFn, free: list[str]) -> Data:
     options = {
         "start_speed": st.integers(1, cruise - 1),
         "queue": st.integers(1, 16),
+        "jerk": st.integers(20 * cruise, 200 * cruise),
     }
     units: Data = {}
     if per_mm := draw(st.sampled_from([None, 1, 80, 400])):

@@ -205,4 +205,4 @@ def test_a_spec_may_name_speeds_in_the_units_of_the_axis(
 
     assert motor.motion.cruise_interval_256 == 16_000_000 * 256 // sps
     assert motor.motion.ladder
-    assert motor.motion.ladder.acceleration == acceleration
+    assert motor.motion.ladder.speeds.acceleration == acceleration

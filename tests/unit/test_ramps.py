@@ -3,11 +3,17 @@ The ramp of an axis against physics: one that is off is found, whatever the plan
 """
 
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
+import pytest
+
 from stepgen import api
-from stepgen.plan.ladder import Ladder
+from stepgen.plan.ladder import Ladder, Speeds, plan_ladder
 from stepgen.plan.model import Plan
+from stepgen.reference import ladder as reference
+from stepgen.reference.ladder import Rung
+from stepgen.reference.ramp import WORST_ERROR, Wish, errors
 from stepgen.verify.ramps import judge_ramps
 from stepgen.verify.report import Check, SpecReport
 
@@ -81,3 +87,50 @@ def test_a_motor_that_is_no_axis_has_no_such_check() -> None:
     judge_ramps(api.load(path), api.plan(path), report)
 
     assert report.checks == []
+
+
+@pytest.mark.parametrize(
+    ("start", "cruise", "acceleration", "jerk"),
+    [
+        (0, 10_000, 20_000, 100_000),
+        (0, 10_000, 20_000, 20_000),  # the acceleration never comes to its highest
+        (500, 16_000, 40_000, 100_000),
+        (50, 2_000, 20_000, 20_000),
+        (0, 300, 300, 300),
+        (0, 4_000, 8_000, 1_000_000),  # nearly none of an S
+    ],
+)
+def test_an_s_keeps_to_physics(start: int, cruise: int, acceleration: int, jerk: int) -> None:
+    """
+    Times that are looked for by halving, in integers, agree with those that Newton's method found.
+    """
+    numbers = [Fraction(number) for number in (start, cruise, acceleration, jerk)]
+    ladder = plan_ladder(16_000_000, Speeds(*numbers))
+    assert ladder is not None
+    rungs = tuple(Rung(row.levels, row.steps, row.slope_256) for row in ladder.rows)
+    climbed = reference.Ladder(ladder.first_interval_256, rungs)
+
+    found = errors(climbed, 16_000_000 * 256 // cruise, Wish(16_000_000, *numbers))
+
+    assert found.speed <= WORST_ERROR
+    assert found.time <= Fraction(1, 10_000)
+
+
+def test_the_first_step_of_an_s_is_the_cube_root() -> None:
+    """
+    From rest s = j t^3 / 6: with 48 000 steps/s^3 the first step takes 1/20 s.
+    """
+    speeds = Speeds(Fraction(0), Fraction(5_000), Fraction(20_000), Fraction(48_000))
+    ladder = plan_ladder(16_000_000, speeds)
+
+    assert ladder is not None
+    assert ladder.first_interval_256 == 16_000_000 * 256 // 20
+
+
+def test_an_s_takes_its_mean_speed_times_its_length() -> None:
+    """
+    From 0 to 10 000 steps/s: 0.2 s with rising acceleration, 0.3 s even, 0.2 s falling: 3500 steps.
+    """
+    numbers = [Fraction(number) for number in (0, 10_000, 20_000, 100_000)]
+
+    assert Speeds(*numbers).steps == Wish(16_000_000, *numbers).steps == 3_500

@@ -184,7 +184,7 @@ SHARED void motorEnergise() {
 // Ticks since the step was due when the interrupt has set the timer anew, for each clock select
 // from 1 on; then the same when it made the step itself.
 static const uint8_t motorElapsed[] PROGMEM = {
-    182, 22, 2, 0, 0,
+    185, 23, 2, 0, 0,
     210, 26, 3, 0, 0,
 };
 

@@ -187,9 +187,9 @@ SHARED void motorEnergise() {
 // from 1 on; then the same when it made the step itself; then both with a limit in
 // milliseconds.
 static const uint16_t motorElapsed[] PROGMEM = {
-    231, 28, 3, 0, 0,
+    234, 29, 3, 0, 0,
     259, 32, 4, 1, 0,
-    271, 33, 4, 1, 0,
+    274, 34, 4, 1, 0,
     299, 37, 4, 1, 0,
 };
 

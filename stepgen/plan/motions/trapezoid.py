@@ -3,7 +3,6 @@ Trapezoid: ramps from a table, a decision at the end of each row, and no look at
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from stepgen.plan.faults import Faults
@@ -11,8 +10,10 @@ from stepgen.plan.isr import Motion
 from stepgen.plan.ladder import (
     FRACTION,
     LONGEST_INTERVAL_CYCLES,
+    MOST_ROWS,
     MOST_STEPS,
     Ladder,
+    Speeds,
     plan_ladder,
 )
 from stepgen.spec import Motor
@@ -65,18 +66,7 @@ def _report_others(motor: Motor, faults: Faults) -> None:
             faults.at(field).report(f"is nothing that a motor with motion trapezoid has; {way_out}")
 
 
-@dataclass(frozen=True)
-class _Speeds:
-    """
-    The speeds of a spec in steps per second, and its acceleration in steps/s^2.
-    """
-
-    start_sps: Fraction
-    cruise_sps: Fraction
-    acceleration: Fraction
-
-
-def _speeds(spec: Trapezoid, scale: Mapping[str, Fraction], faults: Faults) -> _Speeds | None:
+def _speeds(spec: Trapezoid, scale: Mapping[str, Fraction], faults: Faults) -> Speeds | None:
     """
     Return the speeds of *spec* in steps; None after reporting a unit that *scale* has not.
     """
@@ -93,7 +83,8 @@ def _speeds(spec: Trapezoid, scale: Mapping[str, Fraction], faults: Faults) -> _
     start = in_steps("start_speed", spec.start_speed or Quantity(Fraction(0)))
     cruise = in_steps("cruise_speed", spec.cruise_speed)
     acceleration = in_steps("acceleration", spec.acceleration)
-    if start is None or cruise is None or acceleration is None:
+    jerk = in_steps("jerk", spec.jerk) if spec.jerk else None
+    if start is None or cruise is None or acceleration is None or (spec.jerk and jerk is None):
         return None
     if cruise > _MOST_SPS:
         faults.at("cruise_speed").report(
@@ -106,21 +97,28 @@ def _speeds(spec: Trapezoid, scale: Mapping[str, Fraction], faults: Faults) -> _
             "begin from 0"
         )
         return None
-    return _Speeds(start, cruise, acceleration)
+    return Speeds(start, cruise, acceleration, jerk)
 
 
-def _ladder(speeds: _Speeds, f_cpu_hz: int, faults: Faults) -> Ladder | None:
+def _ladder(speeds: Speeds, f_cpu_hz: int, faults: Faults) -> Ladder | None:
     """
     Return the ramp of *speeds*; None after reporting that it is too long or begins too slowly.
     """
-    start = speeds.start_sps
-    ladder = plan_ladder(f_cpu_hz, speeds.cruise_sps, speeds.acceleration, start)
+    ladder = plan_ladder(f_cpu_hz, speeds)
     if ladder is None:
-        squares = (speeds.cruise_sps**2 - start**2) / 2
+        squares = (speeds.cruise_sps**2 - speeds.start_sps**2) / 2
+        more = "more, a higher jerk"
+        if speeds.jerk is None:
+            more = f"{float(squares / MOST_STEPS):.6g} steps/s^2 or more"
         faults.at("acceleration").report(
-            f"makes a ramp of {int(squares / speeds.acceleration)} steps, and a table can have "
-            f"{MOST_STEPS}; take {float(squares / MOST_STEPS):.6g} steps/s^2 or more, or a "
-            "lower cruise_speed"
+            f"makes a ramp of {int(speeds.steps)} steps, and a table can have {MOST_STEPS}; take "
+            f"{more}, or a lower cruise_speed"
+        )
+        return None
+    if len(ladder.rows) > MOST_ROWS:
+        faults.at("acceleration").report(
+            f"makes a table of {len(ladder.rows)} rows, and {MOST_ROWS} are the most; take more, "
+            "or a higher start_speed"
         )
         return None
     if ladder.first_interval_256 > LONGEST_INTERVAL_CYCLES * FRACTION:

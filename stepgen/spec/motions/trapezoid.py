@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from stepgen.spec.base import KindModel
-from stepgen.spec.quantities import Acceleration, Speed
+from stepgen.spec.quantities import Acceleration, Jerk, Speed
 
 MOST_QUEUED = 16
 
@@ -29,6 +29,8 @@ class Trapezoid(KindModel):
     """How fast it speeds up and slows down, in steps/s^2 or such as ``500 mm/s^2``."""
     start_speed: Speed | None = None
     """The speed that it may take at once; without it a move begins from 0."""
+    jerk: Jerk | None = None
+    """How fast the acceleration may change, in steps/s^3 or such as ``2000 mm/s^3``."""
     queue: Annotated[int, Field(ge=0, le=MOST_QUEUED)] = 0
     """How many moves can wait behind the present one; with 0 there is no function for it."""
 
