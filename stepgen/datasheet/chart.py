@@ -11,7 +11,8 @@ from stepgen.datasheet.scene import Scene, at
 from stepgen.errors import StepgenError
 from stepgen.library.example_speeds import example_speed_sps
 from stepgen.library.text import listed
-from stepgen.plan.ladder import FRACTION, Ladder
+from stepgen.plan.curves import FRACTION
+from stepgen.plan.ladder import Ladder
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.rates import Clock
 from stepgen.plan.speed_wishes import Wish, plan_wish

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from stepgen.library.rates_view import microseconds
 from stepgen.library.text import listed
-from stepgen.plan.ladder import FRACTION, LONGEST_INTERVAL_CYCLES
+from stepgen.plan.curves import FRACTION
+from stepgen.plan.ladder import LONGEST_INTERVAL_CYCLES
 from stepgen.plan.model import MotorPlan, Plan, RateLimit
 from stepgen.plan.rates import Clock
 from stepgen.plan.timings import plan_setting

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from stepgen.library.prose import axis_start_comment
 from stepgen.library.sharing import Need
 from stepgen.library.text import comment_lines
-from stepgen.plan.ladder import FRACTION, Row
+from stepgen.plan.curves import FRACTION
+from stepgen.plan.ladder import Row
 from stepgen.plan.model import MotorPlan, Plan
 
 

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from stepgen.library.text import comment_lines
-from stepgen.plan.ladder import FRACTION
+from stepgen.plan.curves import FRACTION
 from stepgen.plan.model import MotorPlan
 
 _NM_IN_A_MM = 1_000_000
 _UM_IN_A_MM = 1_000
 _UINT32_MAX = 0xFFFF_FFFF
 _INT32_STATES = 1 << 32
+_INT32_MM = _INT32_STATES / 2 / _NM_IN_A_MM
 
 _OF_ALL = ("StepsForMicrometres", "ReadNanometres")
 _SPEED, _AXIS_SPEED = "TimerCalcNanometresPerSecond", "IntervalForNanometresPerSecond"
@@ -37,9 +38,11 @@ class Lengths:
     position_comment: tuple[str, ...]
 
 
-def lengths(motor: MotorPlan, f_cpu_hz: int) -> Lengths | None:
+def lengths(motor: MotorPlan, position: str, f_cpu_hz: int) -> Lengths | None:
     """
     Return the functions in metric units of *motor*, None if its spec names no steps per millimetre.
+
+    *position* is the function that tells where it is, in steps.
 
     All is done in integers: in 32 bits where every result and what leads to it fits.
     """
@@ -54,13 +57,12 @@ def lengths(motor: MotorPlan, f_cpu_hz: int) -> Lengths | None:
     zero = "stops the motor"
     if is_axis:
         what, zero = "interval in 1/256 clocks", "SetSpeed refuses"
-    position = "CurrentPosition" if is_axis else "ReadPosition"
     return Lengths(
         speed_function=speed_function(motor),
         whole="int32_t" if is_axis else "uint32_t",
         speed=_interval(nanometres, f_cpu_hz) if is_axis else _top(nanometres, f_cpu_hz),
         steps=(_signed_steps if is_axis else _steps)(per_mm / _UM_IN_A_MM),
-        position=_position(f"{motor.name}{position}()", nanometres),
+        position=_position(f"{position}()", nanometres),
         speed_comment=comment_lines(
             f"The {what} for a speed in nanometres per second, {float(per_mm):.10g} "
             f"steps in a millimetre; 0 for 0, which {zero}."
@@ -87,9 +89,6 @@ def speed_function(motor: MotorPlan) -> str:
     Return what the name of the function ends with that makes of a speed what *motor* takes.
     """
     return _AXIS_SPEED if motor.motion.ladder else _SPEED
-
-
-_INT32_MM = _INT32_STATES / 2 / _NM_IN_A_MM
 
 
 def _top(nanometres: Fraction, f_cpu_hz: int) -> tuple[str, ...]:
@@ -131,7 +130,7 @@ def _interval(nanometres: Fraction, f_cpu_hz: int) -> tuple[str, ...]:
 def _signed_steps(per_um: Fraction) -> str:
     number, divisor = per_um.numerator, per_um.denominator
     if divisor == 1:
-        return f"micrometres * {number}L"
+        return f"static_cast<int32_t>(static_cast<uint32_t>(micrometres) * {number}UL)"
     half = divisor // 2
     return (
         f"static_cast<int32_t>((micrometres * {number}LL + (micrometres < 0 ? -{half} : {half})) / "

@@ -4,7 +4,7 @@ The view of one motor: names, masks and numbers as finished text.
 
 from dataclasses import dataclass
 
-from stepgen.library.api_view import dump_name, init_name, tells_missed
+from stepgen.library.api_view import dump_name, init_name, position_name, tells_missed
 from stepgen.library.axis_view import AxisView, axis_view
 from stepgen.library.example_speeds import example_speed_sps
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
@@ -25,6 +25,7 @@ from stepgen.library.timings import TimerView, timer_view
 from stepgen.plan.model import MotorPlan, Plan
 
 _LARGEST_UINT16, _LARGEST_UINT32 = 0xFFFF, 0xFFFF_FFFF
+_MINUTE = "60ULL * motorTimerGetIOclocksPerSecond() for one a minute;"
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,7 @@ class MotorView:
     axis: AxisView | None
     summary: str
     period_type: str
+    period_note: tuple[str, ...]
     wiring: tuple[str, ...]
     init_comment: tuple[str, ...]
     start_comment: tuple[str, ...]
@@ -128,12 +130,13 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         axis=axis_view(motor, need, plan),
         summary=summary(motor),
         period_type=period_type(plan),
+        period_note=(_MINUTE,) if has_long_periods(plan) else (),
         wiring=(*wiring(motor, board), *comment_lines(sharing_note(motor, need, plan))),
         init_comment=init_comment(motor),
         start_comment=start_comment(motor, need, board.f_cpu_hz),
         release_comment=release_comment(need),
         turns=_turns(motor),
-        lengths=lengths(motor, board.f_cpu_hz),
+        lengths=lengths(motor, position_name(motor), board.f_cpu_hz),
         kernel_name=motor.kernel.kind,
         timing_name=motor.timing.module,
         motion_name=module_name(motor.motion.kind),
@@ -179,7 +182,7 @@ def has_long_periods(plan: Plan) -> bool:
     """
     Return whether steps of *plan* can be minutes apart; then they can in all of its motors.
     """
-    return any(motor.timing.module == "long_compare" for motor in plan.motors)
+    return any(motor.timing.has_long_periods for motor in plan.motors)
 
 
 def period_type(plan: Plan) -> str:

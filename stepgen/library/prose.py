@@ -132,15 +132,16 @@ def calls_comment(plan: Plan) -> tuple[str, ...]:
         else ""
     )
     axes = [f"{motor.name}SetSpeed()" for motor in plan.motors if motor.motion.ladder]
-    searches = f" ({listed(axes)}: longer, since it looks through the ramp)" if axes else ""
+    searches = f" ({listed(axes)}: longer, by a search of the ramp)" if axes else ""
+    places = ["from setup() and loop()", *(["from a callback"] if changing else [])]
     dumps = [motor for motor in changing if motor.motion.dumps]
     names = listed([f"{dump_name(motor)}()" for motor in dumps]) if dumps else ""
     prints = f" The exception is {names}: it prints, and waits for Serial." if dumps else ""
     return comment_lines(
-        "Every function may be called from setup() and loop(), from a callback, and from an "
-        "interrupt of the sketch, also in the middle of another call. Step interrupts wait for an "
-        f"interrupt of the sketch: a call takes at most {call_cycles(plan)} clocks there{callbacks}"
-        f"{searches}, and counts as a stretch with interrupts off.{prints}"
+        f"Every function may be called {', '.join(places)}, and from an interrupt of the sketch, "
+        "also in the middle of another call. Step interrupts wait for an interrupt of the sketch: "
+        f"a call takes at most {call_cycles(plan)} clocks there{callbacks}{searches}, and counts "
+        f"as a stretch with interrupts off.{prints}"
     )
 
 

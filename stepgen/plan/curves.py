@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from math import isqrt, sqrt
+from math import ceil, isqrt, sqrt
 
 FRACTION = 256
 """Parts of a clock in which intervals are counted."""
@@ -85,7 +85,7 @@ def plan_curve(speeds: Speeds, f_cpu_hz: int, steps: int) -> Curve:
     here = [one // (2 * change) for one, change in zip(intervals, [*changes, 1], strict=True)]
     # Where the acceleration rises, a level must be short enough for its end.
     bases = [min(one, here[min(r + _LOOK_AHEAD, steps - 1)]) for r, one in enumerate(here)]
-    return Curve(intervals, bases, -(-speeds.steps // 1))
+    return Curve(intervals, bases, ceil(speeds.steps))
 
 
 def _even(speeds: Speeds, f_cpu_hz: int, steps: int) -> Curve:
@@ -122,7 +122,7 @@ def _times(speeds: Speeds, steps: int) -> list[float]:
     time = left = 0.0
     for r in range(steps):
         if r <= bent:
-            time = _cubic(r, start, jerk, time)
+            time = _cubic(r, start, jerk, time or rising)
         elif r < whole - last:
             ahead = r - bent
             time = rising + 2 * ahead / (risen + sqrt(risen**2 + 2 * peak * ahead))
@@ -137,13 +137,11 @@ def _times(speeds: Speeds, steps: int) -> list[float]:
 
 def _cubic(way: float, speed: float, jerk: float, near: float) -> float:
     """
-    Return the time t with v t + j t^3 / 6 = *way*, by Newton's method from *near* on.
+    Return the time t with v t + j t^3 / 6 = *way*, by Newton's method from *near* on, above 0.
     """
-    time = near or (6 * way / jerk) ** (1 / 3) if jerk > 0 and not speed else near
     if way == 0:
         return 0.0
-    if time == 0:
-        time = way / speed
+    time = near
     for _ in range(_NEWTON_ROUNDS):
         slope = speed + jerk * time**2 / 2
         change = (way - speed * time - jerk * time**3 / 6) / slope

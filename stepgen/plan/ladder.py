@@ -13,10 +13,9 @@ as it lies below at its ends, so that the errors of a row cancel out over its ti
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from math import ceil
 
 from stepgen.plan.curves import FRACTION, Curve, Speeds, plan_curve
-
-__all__ = ["FRACTION", "Ladder", "Row", "Speeds", "plan_ladder"]
 
 MOST_STEPS = 65_000
 """How long a ramp can be: its steps are counted in 16 bits."""
@@ -111,75 +110,62 @@ def plan_ladder(f_cpu_hz: int, speeds: Speeds) -> Ladder | None:
     """
     Return the ramp of *speeds* on a chip of *f_cpu_hz*; None if it takes more than `MOST_STEPS`.
     """
-    length = -(-speeds.steps // 1)
+    length = ceil(speeds.steps)
     if length > MOST_STEPS:
         return None
-    curve = _Curve(plan_curve(speeds, f_cpu_hz, length + 2 * _MOST_LEVELS))
-    first = curve.intervals[0]
+    curve = plan_curve(speeds, f_cpu_hz, length + 2 * _MOST_LEVELS)
     target = int(f_cpu_hz * FRACTION / speeds.cruise_sps)
-    return Ladder(first, tuple(_rows(curve, first, target)), speeds)
+    return Ladder(curve.intervals[0], tuple(_rows(curve, target)), speeds)
 
 
-class _Curve:
+def _level_steps(curve: Curve, r: int) -> int:
     """
-    A curve in levels.
+    Return how many steps a level has that begins at step *r*.
     """
-
-    def __init__(self, curve: Curve) -> None:
-        self.intervals, self.steps, self._bases = curve.intervals, curve.steps, curve.bases
-
-    def level_steps(self, r: int) -> int:
-        """
-        Return how many steps a level has that begins at step *r*.
-        """
-        longest = self._bases[r] // _LEVELS_PER_RAMP
-        if self.intervals[r] >= _SLOW_CYCLES * FRACTION or not longest:
-            return 1
-        return 1 << min(longest.bit_length() - 1, _LONGEST_LEVEL_SHIFT)
-
-    def middle(self, r: int, steps: int) -> int:
-        """
-        Return the interval in the middle of a level of *steps* that begins at step *r*.
-        """
-        last = min(r + steps - 1, len(self.intervals) - 1)
-        return (self.intervals[min(r, last)] + self.intervals[last]) // 2
-
-    def levels_left(self, r: int, steps: int) -> int:
-        """
-        Return how many levels of *steps* the curve has from step *r* on.
-        """
-        if self.steps is not None:
-            return -(-(self.steps - r) // steps)
-        return (len(self.intervals) - 1 - r) // steps
-
-    def goes_on(self, r: int) -> bool:
-        """
-        Tell whether it is still getting faster at step *r*.
-        """
-        return self.steps is None or r < self.steps
+    longest = curve.bases[r] // _LEVELS_PER_RAMP
+    if curve.intervals[r] >= _SLOW_CYCLES * FRACTION or not longest:
+        return 1
+    return 1 << min(longest.bit_length() - 1, _LONGEST_LEVEL_SHIFT)
 
 
-def _rows(curve: _Curve, interval: int, target: int) -> Iterator[Row]:
-    r = 0
-    while interval > target and curve.goes_on(r):
-        steps = curve.level_steps(r)
+def _middle(curve: Curve, r: int, steps: int) -> int:
+    """
+    Return the interval in the middle of a level of *steps* that begins at step *r*.
+    """
+    last = min(r + steps - 1, len(curve.intervals) - 1)
+    return (curve.intervals[min(r, last)] + curve.intervals[last]) // 2
+
+
+def _levels_left(curve: Curve, r: int, steps: int) -> int:
+    """
+    Return how many levels of *steps* the curve has from step *r* on.
+    """
+    if curve.steps is not None:
+        return ceil((curve.steps - r) / steps)
+    return (len(curve.intervals) - 1 - r) // steps
+
+
+def _rows(curve: Curve, target: int) -> Iterator[Row]:
+    interval, r = curve.intervals[0], 0
+    while interval > target and (curve.steps is None or r < curve.steps):
+        steps = _level_steps(curve, r)
         row = _longest_row(curve, r, steps, interval)
         yield row
         interval -= row.levels * row.slope_256
         r += row.levels * steps
 
 
-def _longest_row(curve: _Curve, r: int, steps: int, interval: int) -> Row:
+def _longest_row(curve: Curve, r: int, steps: int, interval: int) -> Row:
     """
     Return the longest row from step *r* on whose line stays within the tolerance of the curve.
     """
-    low, high = 1, min(_MOST_LEVELS, curve.levels_left(r, steps))
+    low, high = 1, min(_MOST_LEVELS, _levels_left(curve, r, steps))
     while low < high:
         middle = (low + high + 1) // 2
         low, high = (middle, high) if _fits(curve, r, steps, middle) else (low, middle - 1)
-    bow = _bow(curve, r, steps, low)
+    bow = _above(curve, r, steps, low, low // 2)
     end = r + low * steps
-    wanted = curve.middle(end, curve.level_steps(min(end, len(curve.intervals) - 1)))
+    wanted = _middle(curve, end, _level_steps(curve, min(end, len(curve.intervals) - 1)))
     drop = max(interval - wanted + int(_BELOW * bow), 0)
     for slope_bytes in SLOPE_BYTES:
         unit = low << 8 * slope_bytes
@@ -189,7 +175,7 @@ def _longest_row(curve: _Curve, r: int, steps: int, interval: int) -> Row:
     return Row(low, steps, slope, slope_bytes)
 
 
-def _fits(curve: _Curve, r: int, steps: int, levels: int) -> bool:
+def _fits(curve: Curve, r: int, steps: int, levels: int) -> bool:
     """
     Tell whether a row of so many *levels* is straight enough, and all of it slow or all of it not.
     """
@@ -197,24 +183,17 @@ def _fits(curve: _Curve, r: int, steps: int, levels: int) -> bool:
     slow = _SLOW_CYCLES * FRACTION
     if curve.intervals[r] >= slow > curve.intervals[end - 1]:
         return False
-    if curve.level_steps(end - 1) != steps:
+    if _level_steps(curve, end - 1) != steps:
         return False
-    allowed = _CURVE_TOLERANCE * curve.middle(end, steps)
+    allowed = _CURVE_TOLERANCE * _middle(curve, end, steps)
     # Where an S bends the other way the line crosses it, and is farthest at the quarters.
     places = (levels * quarter // 4 for quarter in (1, 2, 3))
     return all(abs(_above(curve, r, steps, levels, place)) <= allowed for place in places)
 
 
-def _bow(curve: _Curve, r: int, steps: int, levels: int) -> int:
-    """
-    Return how far the line from end to end lies above the curve in the middle.
-    """
-    return _above(curve, r, steps, levels, levels // 2)
-
-
-def _above(curve: _Curve, r: int, steps: int, levels: int, place: int) -> int:
+def _above(curve: Curve, r: int, steps: int, levels: int, place: int) -> int:
     """
     Return how far the line from end to end lies above the curve at level *place*.
     """
-    first, last = curve.middle(r, steps), curve.middle(r + levels * steps, steps)
-    return first - (first - last) * place // levels - curve.middle(r + place * steps, steps)
+    first, last = _middle(curve, r, steps), _middle(curve, r + levels * steps, steps)
+    return first - (first - last) * place // levels - _middle(curve, r + place * steps, steps)

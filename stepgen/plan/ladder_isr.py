@@ -19,7 +19,6 @@ from stepgen.plan.wide_gate import channel_registers, laps, passed
 _VECTOR_JUMP_CYCLES = 3  # the JMP in the vector table
 _NO_LAPS_CYCLES = 9  # LDS, TST, BRNE, LDS, TST, BREQ that branches
 _HANDLER_CYCLES = 60  # to move the compare register, to look if that was too late, to count that
-_SOON_TICKS = 32  # more than it takes from a look at the counter to a compare
 _BACK_CYCLES = 2  # the RJMP from a level's beginning to the usual way
 
 
@@ -35,7 +34,10 @@ def ladder_gate(timing: TimerPlan, storage: Storage) -> Gate:
         handler_cycles=_HANDLER_CYCLES,
         tells_missed=True,
         registers=(*channel_registers(timing), ("tifr", timing.timer.tifr)),
-        constants=(("ocf", f"OCF{timing.timer.number}{timing.channel}"),),
+        constants=(
+            ("ocf", f"OCF{timing.timer.number}{timing.channel}"),
+            ("soon", "kSoonTicks"),
+        ),
         fields=(
             ("due", "due"),
             ("fraction", "dueFraction"),
@@ -110,8 +112,8 @@ def at_once() -> tuple[Instruction, ...]:
         Instruction("rjmp  12b", 2),
         Instruction("lds   r24, %[tcntLow]", 2, "else there will be one at once"),
         Instruction("lds   r25, %[tcntHigh]", 2),
-        Instruction(f"subi  r24, lo8(-{_SOON_TICKS})", 1),
-        Instruction(f"sbci  r25, hi8(-{_SOON_TICKS})", 1),
+        Instruction("subi  r24, lo8(-(%[soon]))", 1),
+        Instruction("sbci  r25, hi8(-(%[soon]))", 1),
         Instruction("sts   %[ocrHigh], r25", 2),
         Instruction("sts   %[ocrLow], r24", 2),
         Instruction("lds   r24, %[missed]", 2, "and it is counted"),

@@ -15,7 +15,7 @@ def report_impatience(timing: TimerPlan, motion: Motion, faults: Faults) -> None
     """
     Report that clocks of *motion* need steps more often than *timing* may make them.
     """
-    if motion.needs_steps and timing.module == "long_compare":
+    if motion.needs_steps and timing.has_long_periods:
         faults.at(FIELD).report(
             f"the clocks of {motion.kind} need a step each 16 s; remove it, or take "
             "`motion: constant` without `command_timeout_ms`"

@@ -73,6 +73,13 @@ class TimerPlan:
         """
         return (self.form or self.kind).replace("-", "_")
 
+    @property
+    def has_long_periods(self) -> bool:
+        """
+        Tell whether steps can be minutes apart.
+        """
+        return self.module == "long_compare"
+
 
 @dataclass(frozen=True)
 class Left:

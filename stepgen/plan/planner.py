@@ -14,12 +14,12 @@ from stepgen.plan.claims import (
     sketch_claims,
     timing_claims,
 )
+from stepgen.plan.curves import FRACTION
 from stepgen.plan.drives import plan_drive
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Storage, allocate
 from stepgen.plan.isr import Motion, compose
 from stepgen.plan.kernels import Drive, choose_kernel
-from stepgen.plan.ladder import FRACTION
 from stepgen.plan.ladder_isr import compose_ladder
 from stepgen.plan.limits import (
     Chip,

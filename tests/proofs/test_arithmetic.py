@@ -77,6 +77,7 @@ QUICK = (
             "nextDue",
             "levelsIn",
             "slopeOf",
+            "the step interrupt by itself",
         ),
     ),
 )

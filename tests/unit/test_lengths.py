@@ -150,8 +150,9 @@ def test_ways_of_an_axis_go_both_ways(tmp_path: Path, steps: str) -> None:
     """
     header = api.render(_axis(tmp_path, steps))["src/Mine.h"]
     body = _body(header, "int32_t zStepsForMicrometres").replace("L", "")
+    plain = r"static_cast<int32_t>\(static_cast<uint32_t>\(micrometres\) \* (\d+)U\)"
     per_um = Fraction(steps) / 1000
-    found = re.fullmatch(r"micrometres \* (\d+)", body) or re.fullmatch(
+    found = re.fullmatch(plain, body) or re.fullmatch(
         r"static_cast<int32_t>\(\(micrometres \* (\d+) \+ \(micrometres < 0 \? -(\d+) : \2\)\) / "
         r"(\d+)\)",
         body,

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from stepgen import api
-from stepgen.plan.ladder import Ladder, Speeds, plan_ladder
+from stepgen.plan.curves import Speeds
+from stepgen.plan.ladder import Ladder, plan_ladder
 from stepgen.plan.model import Plan
 from stepgen.reference import ladder as reference
 from stepgen.reference.ladder import Rung

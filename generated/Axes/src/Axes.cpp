@@ -176,10 +176,11 @@ SHARED uint8_t decide(AxisMotion &axis, const Row *ramp) {
   way = levelsIn(way, shifts);
   if (way) {
     change = slopeOf(row, shifts);
-    levels = rungs - rung - 1;
     if (mode == kDescend) {
       levels = rung - 1;
       interval += change;
+    } else {
+      levels = rungs - rung - 1;
     }
     if (way <= levels) levels = way - 1;
   } else {
@@ -565,8 +566,8 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
       "   rjmp  12b                      \n"  // 2
       "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
       "   lds   r25, %[tcntHigh]         \n"  // 2
-      "   subi  r24, lo8(-32)            \n"  // 1
-      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   subi  r24, lo8(-(%[soon]))     \n"  // 1
+      "   sbci  r25, hi8(-(%[soon]))     \n"  // 1
       "   sts   %[ocrHigh], r25          \n"  // 2
       "   sts   %[ocrLow], r24           \n"  // 2
       "   lds   r24, %[missed]           \n"  // 2  and it is counted
@@ -594,6 +595,7 @@ ISR(TIMER5_COMPA_vect, ISR_NAKED) {
         [length] "i"(&xMotion.length),
         [missed] "i"(&xMotion.missed),
         [ocf] "n"(OCF5A),
+        [soon] "n"(kSoonTicks),
         [port0] "I"(_SFR_IO_ADDR(PORTF))
       : "memory");
 }
@@ -972,8 +974,8 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
       "   rjmp  12b                      \n"  // 2
       "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
       "   lds   r25, %[tcntHigh]         \n"  // 2
-      "   subi  r24, lo8(-32)            \n"  // 1
-      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   subi  r24, lo8(-(%[soon]))     \n"  // 1
+      "   sbci  r25, hi8(-(%[soon]))     \n"  // 1
       "   sts   %[ocrHigh], r25          \n"  // 2
       "   sts   %[ocrLow], r24           \n"  // 2
       "   lds   r24, %[missed]           \n"  // 2  and it is counted
@@ -1001,6 +1003,7 @@ ISR(TIMER5_COMPB_vect, ISR_NAKED) {
         [length] "i"(&yMotion.length),
         [missed] "i"(&yMotion.missed),
         [ocf] "n"(OCF5B),
+        [soon] "n"(kSoonTicks),
         [port0] "I"(_SFR_IO_ADDR(PORTF))
       : "memory");
 }
@@ -1412,8 +1415,8 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
       "   rjmp  12b                      \n"  // 2
       "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
       "   lds   r25, %[tcntHigh]         \n"  // 2
-      "   subi  r24, lo8(-32)            \n"  // 1
-      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   subi  r24, lo8(-(%[soon]))     \n"  // 1
+      "   sbci  r25, hi8(-(%[soon]))     \n"  // 1
       "   sts   %[ocrHigh], r25          \n"  // 2
       "   sts   %[ocrLow], r24           \n"  // 2
       "   lds   r24, %[missed]           \n"  // 2  and it is counted
@@ -1441,6 +1444,7 @@ ISR(TIMER5_COMPC_vect, ISR_NAKED) {
         [length] "i"(&zMotion.length),
         [missed] "i"(&zMotion.missed),
         [ocf] "n"(OCF5C),
+        [soon] "n"(kSoonTicks),
         [port0] "n"(_SFR_MEM_ADDR(PORTL))
       : "memory");
 }

@@ -35,10 +35,10 @@ constexpr uint32_t motorInterval(uint32_t stepsPerSecond) {
   return stepsPerSecond ? 256UL * F_CPU / stepsPerSecond : 0;
 }
 
-// Every function may be called from setup() and loop(), from a callback, and from an interrupt of
-// the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
-// sketch: a call takes at most 1300 clocks there (slideSetSpeed(): longer, since it looks through
-// the ramp), and counts as a stretch with interrupts off.
+// Every function may be called from setup() and loop(), and from an interrupt of the sketch, also
+// in the middle of another call. Step interrupts wait for an interrupt of the sketch: a call takes
+// at most 1300 clocks there (slideSetSpeed(): longer, by a search of the ramp), and counts as a
+// stretch with interrupts off.
 
 // ---- slide: A4988, 1/16 steps, timer 1 ----
 //

@@ -176,10 +176,11 @@ SHARED uint8_t decide(AxisMotion &axis, const Row *ramp) {
   way = levelsIn(way, shifts);
   if (way) {
     change = slopeOf(row, shifts);
-    levels = rungs - rung - 1;
     if (mode == kDescend) {
       levels = rung - 1;
       interval += change;
+    } else {
+      levels = rungs - rung - 1;
     }
     if (way <= levels) levels = way - 1;
   } else {
@@ -576,8 +577,8 @@ ISR(TIMER1_COMPB_vect, ISR_NAKED) {
       "   rjmp  12b                      \n"  // 2
       "   lds   r24, %[tcntLow]          \n"  // 2  else there will be one at once
       "   lds   r25, %[tcntHigh]         \n"  // 2
-      "   subi  r24, lo8(-32)            \n"  // 1
-      "   sbci  r25, hi8(-32)            \n"  // 1
+      "   subi  r24, lo8(-(%[soon]))     \n"  // 1
+      "   sbci  r25, hi8(-(%[soon]))     \n"  // 1
       "   sts   %[ocrHigh], r25          \n"  // 2
       "   sts   %[ocrLow], r24           \n"  // 2
       "   lds   r24, %[missed]           \n"  // 2  and it is counted
@@ -605,6 +606,7 @@ ISR(TIMER1_COMPB_vect, ISR_NAKED) {
         [length] "i"(&slideMotion.length),
         [missed] "i"(&slideMotion.missed),
         [ocf] "n"(OCF1B),
+        [soon] "n"(kSoonTicks),
         [port0] "I"(_SFR_IO_ADDR(PORTD))
       : "memory");
 }

@@ -54,9 +54,9 @@ uint32_t motorTimerGetIOclocksPerSecond();
 // The virtual timer TOP for a speed in steps per second; 0 for 0, which stops the motor.
 uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 
-// Every function may be called from setup() and loop(), from a callback, and from an interrupt of
-// the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
-// sketch: a call takes at most 1000 clocks there, and counts as a stretch with interrupts off.
+// Every function may be called from setup() and loop(), and from an interrupt of the sketch, also
+// in the middle of another call. Step interrupts wait for an interrupt of the sketch: a call takes
+// at most 1000 clocks there, and counts as a stretch with interrupts off.
 
 // ---- motor: four switches (ULN2003 and the like), half steps, timer 1 ----
 //

@@ -55,9 +55,9 @@ uint32_t motorTimerGetIOclocksPerSecond();
 // The virtual timer TOP for a speed in steps per second; 0 for 0, which stops the motor.
 uint32_t motorTimerCalcPerSecond(uint16_t motorPulses);
 
-// Every function may be called from setup() and loop(), from a callback, and from an interrupt of
-// the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
-// sketch: a call takes at most 1000 clocks there, and counts as a stretch with interrupts off.
+// Every function may be called from setup() and loop(), and from an interrupt of the sketch, also
+// in the middle of another call. Step interrupts wait for an interrupt of the sketch: a call takes
+// at most 1000 clocks there, and counts as a stretch with interrupts off.
 
 // ---- motor: A4988, 1/16 steps, timer 1 ----
 //
@@ -82,6 +82,7 @@ void motorShieldInit();
 //
 //   control            MOTOR_CTRL_... bits
 //   timerTop32virtual  I/O clocks between two steps, such as motorTimerCalcPerSecond(500);
+//                      60ULL * motorTimerGetIOclocksPerSecond() for one a minute;
 //                      0 stops the motor
 //   limit              steps, or milliseconds with MOTOR_CTRL_ENDPOINT_MILLIS; 0: no end
 //

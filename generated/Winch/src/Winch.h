@@ -69,9 +69,9 @@ void motorWatchdogFeed();
 // MCUSR, which tells, before the program began: then nobody knows.
 int8_t motorWatchdogFired();
 
-// Every function may be called from setup() and loop(), from a callback, and from an interrupt of
-// the sketch, also in the middle of another call. Step interrupts wait for an interrupt of the
-// sketch: a call takes at most 1000 clocks there, and counts as a stretch with interrupts off.
+// Every function may be called from setup() and loop(), and from an interrupt of the sketch, also
+// in the middle of another call. Step interrupts wait for an interrupt of the sketch: a call takes
+// at most 1000 clocks there, and counts as a stretch with interrupts off.
 
 // ---- drum: Arduino Motor Shield (L298), full steps, timer 1 ----
 //

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from stepgen.library.timings import wide_compare
 from stepgen.library.timings.wide_compare import WideCompareView
-from stepgen.plan.ladder import FRACTION
+from stepgen.plan.curves import FRACTION
 from stepgen.plan.model import MotorPlan
 
 

@@ -5,15 +5,14 @@ Trapezoid: ramps from a table, a decision at the end of each row, and no look at
 from collections.abc import Mapping
 from fractions import Fraction
 
+from stepgen.plan.curves import FRACTION, Speeds
 from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Motion
 from stepgen.plan.ladder import (
-    FRACTION,
     LONGEST_INTERVAL_CYCLES,
     MOST_ROWS,
     MOST_STEPS,
     Ladder,
-    Speeds,
     plan_ladder,
 )
 from stepgen.spec import Motor
