@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from stepgen.library import lengths
+from stepgen.library.limits_view import switch_functions
 from stepgen.plan.model import MotorPlan, Plan
 
 _CHANGING = frozenset({"update-events"})
@@ -73,7 +74,15 @@ _CODES = (
     _Name("MOTOR_ERROR_UPDATE", -4, "modification, interval or count of events is 0", _CHANGING),
     _Name("MOTOR_ERROR_RUNNING", -5, "not while the motor runs", _ALL | _AXES),
     _Name("MOTOR_ERROR_QUEUE_FULL", -6, "no place is left for the move", _AXES),
+    _Name("MOTOR_ERROR_RANGE", -7, "outside of the spec's range", _AXES),
+    _Name("MOTOR_ERROR_HOMING", -8, "not while the motor looks for home", _AXES),
+    _Name("MOTOR_ERROR_FAULT", -9, "not until the fault is cleared", _AXES),
     _Name("MOTOR_WARN_NOT_ENABLED", 1, "a speed without MOTOR_CTRL_DRV_EN: the motor stops"),
+)
+_FAULTS = (
+    _Name("MOTOR_FAULT_LIMIT", 1, "stopped at a limit switch", _AXES),
+    _Name("MOTOR_FAULT_HOMING", 2, "homing has not found the switch, or it stays pressed", _AXES),
+    _Name("MOTOR_FAULT_EMERGENCY", 3, "stopped in an emergency", _AXES),
 )
 _FUNCTIONS = ("ShieldInit", "SetSpeed", "ReadStatus", "ReadPosition")
 _AXIS_FUNCTIONS = (
@@ -84,6 +93,12 @@ _AXIS_SWITCH_FUNCTIONS = ("EnableOutputs", "DisableOutputs")
 _QUEUE_FUNCTIONS = ("QueueMoveTo",)
 _SWITCH_CODES = {"MOTOR_ERROR_RUNNING"}
 _QUEUE_CODES = {"MOTOR_ERROR_QUEUE_FULL"}
+_GUARD_FUNCTIONS = ("EmergencyStop", "ReadFault", "ClearFault")
+_GUARD_CODES = {"MOTOR_ERROR_FAULT", "MOTOR_FAULT_EMERGENCY"}
+_SWITCH_FAULTS = {"MOTOR_FAULT_LIMIT"}
+_RANGE_CODES = {"MOTOR_ERROR_RANGE"}
+_HOMING_FUNCTIONS = ("Home", "IsHomed")
+_HOMING_CODES = {"MOTOR_ERROR_HOMING", "MOTOR_FAULT_HOMING"}
 _SWITCH_FUNCTIONS = ("Hold", "Release")
 _MISSED_BITS = {"MOTOR_STAT_MISSED"}
 _MISSED_FUNCTIONS = ("ReadMissed",)
@@ -118,6 +133,13 @@ def codes(plan: Plan) -> tuple[Definition, ...]:
     return _definitions("int8_t", _used(_CODES, plan))
 
 
+def faults(plan: Plan) -> tuple[Definition, ...]:
+    """
+    Return why motors of *plan* can refuse to move until that is cleared.
+    """
+    return _definitions("int8_t", _used(_FAULTS, plan))
+
+
 def function_names(plan: Plan) -> tuple[str, ...]:
     """
     Return all functions, those of the library first.
@@ -140,6 +162,7 @@ def _parts(motor: MotorPlan) -> tuple[str, ...]:
         parts = (*_AXIS_FUNCTIONS, *missed)
         parts += _AXIS_SWITCH_FUNCTIONS if motor.switches_current else ()
         parts += _QUEUE_FUNCTIONS if motor.motion.queue else ()
+        parts += _limit_parts(motor)
         return (*parts, *turns, *lengths.functions(motor))
     parts = (*_FUNCTIONS, *missed)
     parts += _SWITCH_FUNCTIONS if motor.switches_current else ()
@@ -147,6 +170,13 @@ def _parts(motor: MotorPlan) -> tuple[str, ...]:
     parts += _TIMED_FUNCTIONS if motor.command_timeout_ms is not None else ()
     parts += turns
     return (*parts, *lengths.functions(motor))
+
+
+def _limit_parts(motor: MotorPlan) -> tuple[str, ...]:
+    if motor.end_stops is None:
+        return ()
+    homing = _HOMING_FUNCTIONS if motor.end_stops.homing else ()
+    return (*_GUARD_FUNCTIONS, *switch_functions(motor), *homing)
 
 
 def init_name(motor: MotorPlan) -> str:
@@ -202,7 +232,7 @@ def constant_names(plan: Plan) -> tuple[str, ...]:
     """
     Return all constants of the header.
     """
-    used = _used((*_CONTROL_BITS, *_STATUS_BITS, *_CODES), plan)
+    used = _used((*_CONTROL_BITS, *_STATUS_BITS, *_CODES, *_FAULTS), plan)
     names = dict.fromkeys(name.name for name in used)
     return (*names, *(_RANGE if "motor" in api_names(plan) else ()))
 
@@ -216,6 +246,14 @@ def _used(names: Iterable[_Name], plan: Plan) -> tuple[_Name, ...]:
         unused |= _SWITCH_CODES
     if not any(tells_missed(motor) for motor in plan.motors):
         unused |= _MISSED_BITS
+    stops = [motor.end_stops for motor in plan.motors if motor.end_stops]
+    for names_of, is_used in (
+        (_GUARD_CODES, bool(stops)),
+        (_SWITCH_FAULTS, any(one.switches for one in stops)),
+        (_RANGE_CODES, any(one.range for one in stops)),
+        (_HOMING_CODES, any(one.homing for one in stops)),
+    ):
+        unused |= set() if is_used else names_of
     used: dict[str, _Name] = {}
     for name in names:
         if name.motions & kinds and name.name not in unused:

@@ -10,6 +10,7 @@ from stepgen.library.example_speeds import example_speed_sps
 from stepgen.library.hot_view import Line, instruction_lines, operand_lines
 from stepgen.library.kernel_view import KernelView, kernel_view
 from stepgen.library.lengths import Lengths, lengths
+from stepgen.library.limits_view import LimitsView, limits_name, limits_view
 from stepgen.library.port_view import Bits, Change, bit_groups, switched
 from stepgen.library.prose import (
     init_comment,
@@ -69,6 +70,8 @@ class MotorView:
     title: str
     init: str
     axis: AxisView | None
+    limits_name: str
+    limits: LimitsView | None
     summary: str
     period_type: str
     period_note: tuple[str, ...]
@@ -128,6 +131,8 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         title=motor.name[0].upper() + motor.name[1:],
         init=init_name(motor),
         axis=axis_view(motor, need, plan),
+        limits_name=limits_name(motor),
+        limits=limits_view(motor, plan),
         summary=summary(motor),
         period_type=period_type(plan),
         period_note=(_MINUTE,) if has_long_periods(plan) else (),

@@ -8,6 +8,7 @@ from stepgen.devices import Board
 from stepgen.library.api_view import call_cycles, dump_name
 from stepgen.library.sharing import Need, sharing_rules
 from stepgen.library.text import comment_lines, frequency, listed
+from stepgen.plan.end_stops import EndSwitch
 from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.pulses import PulseDrive
 
@@ -44,6 +45,10 @@ def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
         f"  {wire.signal:<10}{wire.pin.label:<6}{wire.pin.bit.name}"
         for wire in motor.drive.every_wire
     ]
+    rows += [
+        f"  {_signal(switch):<10}{switch.pin.label:<6}{switch.pin.bit.name:<6}{_level(switch)}"
+        for switch in _switches(motor)
+    ]
     timer = motor.timing.timer
     taken = f"Timer {timer.number} belongs to the motor: no analogWrite() on {_pwm(motor, board)}."
     return (
@@ -53,6 +58,22 @@ def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
         *comment_lines(port_rule(motor, board)),
         *comment_lines(" ".join(filter(None, (taken, motor.timing.rule)))),
     )
+
+
+def _switches(motor: MotorPlan) -> Sequence[EndSwitch]:
+    return motor.end_stops.switches if motor.end_stops else ()
+
+
+def _signal(switch: EndSwitch) -> str:
+    return f"{switch.end} end"
+
+
+def _level(switch: EndSwitch) -> str:
+    """
+    Return what the pin of *switch* shows at the end of the way, and how it is held else.
+    """
+    pulled = ", pulled up by the chip" if switch.pull_up else ""
+    return f"{'HIGH' if switch.active_high else 'LOW'} there{pulled}"
 
 
 def port_rule(motor: MotorPlan, board: Board) -> str:
@@ -155,8 +176,9 @@ def init_comment(motor: MotorPlan) -> tuple[str, ...]:
         if isinstance(motor.drive, PulseDrive) and motor.drive.enables
         else ""
     )
+    inputs = ", and those of the switches inputs" if _switches(motor) else ""
     return comment_lines(
-        f"Makes the pins outputs{coils}, at position 0. Call it once, from setup(). Until "
+        f"Makes the pins outputs{coils}, at position 0{inputs}. Call it once, from setup(). Until "
         f"then, and from any reset on, they are inputs and drive nothing{floats}."
     )
 
@@ -168,8 +190,27 @@ def axis_start_comment(motor: MotorPlan, need: Need | None, f_cpu_hz: int) -> tu
     energised = "the coils are energised at once and " if motor.switches_current else ""
     return comment_lines(
         f"From rest {energised}the first step comes one interval later{_wake(motor, f_cpu_hz)}. "
-        f"{_rest_comment(motor, need)} Always returns 0."
+        f"{_rest_comment(motor, need)} {returns(*refusals(motor))}"
     )
+
+
+def refusals(motor: MotorPlan) -> tuple[str, ...]:
+    """
+    Return the codes with which the limits of *motor* refuse a move.
+    """
+    stops = motor.end_stops
+    if stops is None:
+        return ()
+    by_range = ("MOTOR_ERROR_RANGE",) if stops.range else ()
+    by_homing = ("MOTOR_ERROR_HOMING",) if stops.homing else ()
+    return (*by_range, *by_homing, "MOTOR_ERROR_FAULT")
+
+
+def returns(*codes: str) -> str:
+    """
+    Return what a function returns that can be refused with *codes*.
+    """
+    return f"Returns {listed(['0', *codes], 'or')}." if codes else "Always returns 0."
 
 
 def _wake(motor: MotorPlan, f_cpu_hz: int) -> str:
@@ -232,15 +273,18 @@ def isr_contract(motor: MotorPlan) -> tuple[str, ...]:
         for cycles in (path.lap_cycles,)
         if cycles
     )
+    pressed = ""
+    if path.pressed_cycles:
+        pressed = f", up to {path.pressed_cycles} more while limit switches are pressed"
     if motor.gate.boundary:
         laps = " In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too."
     return comment_lines(
         f"Timer {timing.timer.number} {timing.event}: one step, {path.usual_cycles} cycles from "
         f"the interrupt's response to RETI{clock}; at most {motor.isr_bound_cycles} when it{late} "
         f"goes on in {motor.handler}. {motor.drive.edge_note} {path.edge_cycles} cycles after "
-        f"{timing.instant} ({path.boundary_edge_cycles} before a boundary).{laps} It writes port "
-        f"{ports} and nothing else that the sketch can see. Behind each instruction stand its "
-        "cycles."
+        f"{timing.instant} ({path.boundary_edge_cycles} before a boundary{pressed}).{laps} It "
+        f"writes port {ports} and nothing else that the sketch can see. Behind each instruction "
+        "stand its cycles."
     )
 
 

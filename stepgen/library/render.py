@@ -129,6 +129,7 @@ def _partials(made: Environment, view: LibraryView) -> dict[str, object]:
         "kernels": modules("kernels", {motor.kernel_name for motor in view.motors}),
         "timings": modules("timings", timings),
         "motions": modules("motions", {motor.motion_name for motor in view.motors}),
+        "limits_of": modules("limits", {motor.limits_name for motor in view.motors}),
         "timeouts": modules("timeouts", {motor.timeout_name for motor in view.motors}),
         "watchdogs": modules("watchdogs", {view.watchdog_name}),
         "consoles": modules("consoles", set(view.api_names)),

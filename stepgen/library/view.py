@@ -11,6 +11,7 @@ from stepgen.library.api_view import (
     codes,
     constant_names,
     control_bits,
+    faults,
     function_names,
     status_bits,
 )
@@ -64,6 +65,7 @@ class LibraryView:
     control_bits: tuple[Definition, ...]
     status_bits: tuple[Definition, ...]
     codes: tuple[Definition, ...]
+    faults: tuple[Definition, ...]
     results: str
     constants: tuple[Named, ...]
     period_type: str
@@ -74,6 +76,7 @@ class LibraryView:
     clock_bit: int
     watches_clock: bool
     releases: bool
+    homes: bool
     dumps: bool
     api_names: tuple[str, ...]
     has_channels: bool
@@ -120,6 +123,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         control_bits=control_bits(plan),
         status_bits=status_bits(plan),
         codes=codes(plan),
+        faults=faults(plan),
         results=_results(plan),
         constants=_constants(plan),
         period_type=period_type(plan),
@@ -130,6 +134,7 @@ def make_view(plan: Plan, spec_hash: str) -> LibraryView:
         clock_bit=CLOCK_BIT,
         watches_clock=any(motor.motion.watches_clock for motor in plan.motors),
         releases=any(motor.releases for motor in motors),
+        homes=any(motor.limits_name == "homing" for motor in motors),
         dumps=any(motor.motion.dumps for motor in plan.motors),
         api_names=api_names(plan),
         has_channels=any(motor.timing.channel for motor in plan.motors),

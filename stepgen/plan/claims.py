@@ -10,6 +10,7 @@ from stepgen.plan.faults import Faults
 from stepgen.plan.kernels import Drive
 from stepgen.plan.model import TimerPlan
 from stepgen.plan.uses import ANALOG_WRITE, Use, pwm_channel
+from stepgen.spec.limits import Limits
 
 _VECTOR = "vector "
 _CORE_TIMER = "as the core sets it up"
@@ -54,6 +55,22 @@ def drive_claims(motor: str, drive: Drive, faults: Faults) -> Iterable[Claim]:
             role=f", as {wire.signal}",
             sharing=f"as an enable of {drive.kind}" if shared else "",
         )
+
+
+def switch_claims(motor: str, limits: Limits, board: Board, faults: Faults) -> Iterable[Claim]:
+    """
+    Return what *limits* take: the pins of the switches that the board has.
+    """
+    for end, switch in (("low", limits.low), ("high", limits.high)):
+        pin = switch and board.find_pin(switch.pin)
+        if pin:
+            yield Claim(
+                _pin(pin),
+                f"motor {motor}",
+                faults.at("limits", end, "pin"),
+                "give the switch a pin of its own",
+                role=f", as its {end} limit switch",
+            )
 
 
 def timing_claims(motor: str, timing: TimerPlan, way_out: str, faults: Faults) -> Iterable[Claim]:

@@ -91,6 +91,8 @@ class HotPath:
         boundary_edge_cycles: The same on the boundary's way.
         boundary_entry_cycles: From the flag to the first instruction of the boundary handler.
         think_entry_cycles: The same when it is reached before the step.
+        limit_handler: Where it goes on in place of a step that would lead into a limit switch.
+        pressed_cycles: How much longer it takes to the step while limit switches are pressed.
     """
 
     usual: tuple[Instruction, ...]
@@ -106,6 +108,8 @@ class HotPath:
     boundary_edge_cycles: int
     boundary_entry_cycles: int
     think_entry_cycles: int
+    limit_handler: str = ""
+    pressed_cycles: int = 0
 
 
 def compose(

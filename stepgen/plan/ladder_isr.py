@@ -13,6 +13,7 @@ from stepgen.plan.instructions import Gate, Instruction, Storage, total_cycles
 from stepgen.plan.isr import HotPath, cycles_to_edge, to_boundary
 from stepgen.plan.kernels import Kernel
 from stepgen.plan.model import TimerPlan
+from stepgen.plan.polls import Polls
 from stepgen.plan.step_code import end_code, saved_registers, step_code
 from stepgen.plan.wide_gate import channel_registers, laps, passed
 
@@ -125,9 +126,13 @@ def at_once() -> tuple[Instruction, ...]:
     )
 
 
-def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gate: Gate) -> HotPath:
+def compose_ladder(
+    kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gate: Gate, polls: Polls
+) -> HotPath:
     """
     Return the step interrupt of *kernel*; its rare ways go on in the function *handler*.
+
+    Before each step it looks at the limit switches of *polls*.
     """
     saved = saved_registers(kernel)
     entry = (
@@ -150,7 +155,7 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
     restore = (Instruction("pop   r25", 2), *leave)
     first, *others = end_code(kernel, restore, 2 + total_cycles(punctual))  # 2 for the PUSH
     usual_end = (replace(first, label="12"), *others, Instruction("reti", mcu.response_cycles))
-    usual_way = (*step, *punctual, *usual_end)
+    usual_way = (*polls.before(step, 0), *punctual, *usual_end)
     late = (Instruction("rjmp  18f", 2, label="13"),)
     count = (
         storage.count.load("r24", "count"),
@@ -163,7 +168,7 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
     rare = (
         replace(first_lap, label="1"),
         *more_laps,
-        *step,
+        *polls.before(step, 1),
         *gate.go_on,
         Instruction("rjmp  11b", _BACK_CYCLES, "the rest is as usual"),
         Instruction("pop   r25", 2, label="16"),
@@ -172,21 +177,27 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         *leave[1:],
         Instruction(f"jmp   {handler}", 3),
         *at_once(),
+        *polls.rare(leave),
     )
     arrival = mcu.response_cycles + _VECTOR_JUMP_CYCLES
-    until_step = arrival + total_cycles((*entry, *count))
+    until_look = arrival + total_cycles((*entry, *count))
+    until_step = until_look + polls.cycles
     until_rare_step = until_step + 1 + _NO_LAPS_CYCLES
-    usual_cycles = until_step + total_cycles(usual_way)
+    usual_cycles = until_look + total_cycles(usual_way)
     next_level = (*step, *gate.go_on, *punctual, *usual_end)
     tail = total_cycles((*end_code(kernel, (), sum(decide) + 2), *leave)) + 3
-    to_handler = until_rare_step + total_cycles(step) + sum(decide[1:]) + 2 + tail
+    until_late_step = until_rare_step + polls.pressed_cycles
+    to_handler = max(
+        until_late_step + total_cycles(step) + sum(decide[1:]) + 2 + tail,
+        until_rare_step - polls.cycles + polls.entry_cycles(leave),
+    )
     return HotPath(
         usual=(*entry, *count, *usual_way),
         boundary=rare,
         clock=(),
         late=late,
         usual_cycles=usual_cycles,
-        recurring_cycles=until_rare_step + total_cycles(next_level) + _BACK_CYCLES,
+        recurring_cycles=until_late_step + total_cycles(next_level) + _BACK_CYCLES,
         lap_cycles=(),
         overrun_cycles=None,
         clock_cycles=usual_cycles,
@@ -194,4 +205,6 @@ def compose_ladder(kernel: Kernel, storage: Storage, mcu: Mcu, handler: str, gat
         boundary_edge_cycles=until_rare_step + cycles_to_edge(step),
         boundary_entry_cycles=to_handler,
         think_entry_cycles=to_handler,
+        limit_handler=polls.handler,
+        pressed_cycles=polls.pressed_cycles,
     )

@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from stepgen.devices import Board, Timer
+from stepgen.plan.end_stops import EndStops
 from stepgen.plan.instructions import Gate, Storage
 from stepgen.plan.isr import HotPath, Motion
 from stepgen.plan.kernels import Drive, Kernel
@@ -163,6 +164,7 @@ class MotorPlan:
     Args:
         name: Its name in the spec: the prefix of its functions.
         motion: What its motion asks of the step interrupt.
+        end_stops: The limits that it keeps to, or None.
         drive: How its coils are connected and what they see.
         kernel: How one step changes the ports.
         timing: What paces it.
@@ -180,6 +182,7 @@ class MotorPlan:
 
     name: str
     motion: Motion
+    end_stops: EndStops | None
     drive: Drive
     kernel: Kernel
     timing: TimerPlan

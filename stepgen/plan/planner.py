@@ -12,10 +12,12 @@ from stepgen.plan.claims import (
     drive_claims,
     report_conflicts,
     sketch_claims,
+    switch_claims,
     timing_claims,
 )
 from stepgen.plan.curves import FRACTION
 from stepgen.plan.drives import plan_drive
+from stepgen.plan.end_stops import plan_end_stops
 from stepgen.plan.faults import Faults
 from stepgen.plan.instructions import Storage, allocate
 from stepgen.plan.isr import Motion, compose
@@ -31,6 +33,8 @@ from stepgen.plan.limits import (
 from stepgen.plan.long_periods import report_impatience, report_unlike
 from stepgen.plan.model import Left, MotorPlan, Plan, RateLimit, TimerPlan
 from stepgen.plan.motions import plan_motion
+from stepgen.plan.polls import Polls, with_switches
+from stepgen.plan.scale import Scale
 from stepgen.plan.timings import plan_gate, plan_timing, way_out
 from stepgen.plan.uses import Use, read_uses
 from stepgen.spec import LoadedSpec, Motor
@@ -54,7 +58,7 @@ def make_plan(loaded: LoadedSpec) -> Plan:
     uses = read_uses(spec.uses, board, lambda at, reason: faults.at("uses", at).report(reason))
     timings = _plan_timings(loaded, uses.values(), board, faults)
     parts = {name: (_drive(loaded, name, board, faults), timings[name]) for name in spec.motors}
-    report_conflicts(_claims(uses, board, parts, faults))
+    report_conflicts((*_claims(uses, board, parts, faults), *_switch_claims(loaded, board, faults)))
     storages = allocate(board.mcu, spec.motors)
     motors = [
         _plan_motor(name, motor, parts[name], storage, (board, _at(faults, name)))
@@ -223,6 +227,12 @@ def _claims(
     return (*sketch_claims(uses, board, motors, faults), *motors)
 
 
+def _switch_claims(loaded: LoadedSpec, board: Board, faults: Faults) -> Iterable[Claim]:
+    for name, motor in loaded.spec.motors.items():
+        if motor.limits:
+            yield from switch_claims(name, motor.limits, board, _at(faults, name))
+
+
 def _plan_motor(
     name: str,
     motor: Motor,
@@ -240,7 +250,12 @@ def _plan_motor(
             "the driver has no ENABLE, so that nothing can switch its coils off; add "
             "`at_rest: hold`, or give `enable` a pin"
         )
-    motion = plan_motion(motor, _scale(motor, drive), board.f_cpu_hz, faults)
+    scale = Scale(_units(motor, drive))
+    motion = plan_motion(motor, scale, board.f_cpu_hz, faults)
+    end_stops = None
+    if motor.limits and motion:
+        end_stops = plan_end_stops(motor.limits, motion, scale, board, faults.at("limits"))
+        motion = end_stops.limited(motion) if end_stops else None
     if timing and motion:
         report_impatience(timing, motion, faults.at("timing"))
         timing = _form(timing, motion, faults.at("timing"))
@@ -250,12 +265,16 @@ def _plan_motor(
     handler = f"__vector_{name}_boundary"
     gate = plan_gate(timing, motion, storage, board.mcu)
     if motion.ladder:
-        hot_path = compose_ladder(kernel, storage, board.mcu, handler, gate)
+        switches = end_stops.switches if end_stops else ()
+        gate = with_switches(gate, switches, homes=bool(end_stops and end_stops.homing))
+        polls = Polls(switches, f"__vector_{name}_limit")
+        hot_path = compose_ladder(kernel, storage, board.mcu, handler, gate, polls)
     else:
         hot_path = compose(kernel, storage, board.mcu, handler, gate, motion)
     return MotorPlan(
         name=name,
         motion=motion,
+        end_stops=end_stops,
         drive=drive,
         kernel=kernel,
         timing=timing,
@@ -297,16 +316,16 @@ def _wish(motor: Motor, motion: Motion, board: Board) -> Fraction | None:
     return motor.max_steps_per_second
 
 
-def _scale(motor: Motor, drive: Drive | None) -> dict[str, Fraction]:
+def _units(motor: Motor, drive: Drive | None) -> dict[str, Fraction]:
     """
     Return the steps in each unit of speeds that the spec of *motor* allows.
     """
-    scale = {"steps": Fraction(1)}
+    units = {"steps": Fraction(1)}
     if motor.steps_per_mm is not None:
-        scale["mm"] = motor.steps_per_mm
+        units["mm"] = motor.steps_per_mm
     if drive and (per_turn := _steps_per_turn(motor, drive)):
-        scale |= {"turns": per_turn, "deg": per_turn / 360}
-    return scale
+        units |= {"turns": per_turn, "deg": per_turn / 360}
+    return units
 
 
 def _steps_per_turn(motor: Motor, drive: Drive) -> Fraction | None:

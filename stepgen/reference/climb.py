@@ -20,6 +20,7 @@ class Climb:
     Attributes:
         left: Steps still to be made, None without an end.
         interval_256: The interval after the last step, or the first one.
+        cruise_256: Its shortest interval.
     """
 
     def __init__(self, ladder: Ladder, cruise_256: int) -> None:
@@ -31,7 +32,7 @@ class Climb:
         """
         Let *cruise_256* be the shortest interval from the next decision on.
         """
-        self._cruise_256 = cruise_256
+        self.cruise_256 = cruise_256
         self._goal = self._ladder.goal(cruise_256)
 
     @property
@@ -109,7 +110,7 @@ class Climb:
             self._is_climbing = True
         else:
             at_goal = self._number == self._goal
-            self._visit(1, self._cruise_256 if at_goal else level.interval_256)
+            self._visit(1, self.cruise_256 if at_goal else level.interval_256)
 
     def _has_room(self, level: Level) -> bool:
         """

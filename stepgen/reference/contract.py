@@ -60,3 +60,6 @@ class Code(IntEnum):
     UPDATE = -4
     RUNNING = -5
     QUEUE_FULL = -6
+    RANGE = -7
+    HOMING = -8
+    FAULT = -9

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from stepgen.reference.contract import MotionKind, TimingKind
+from stepgen.reference.end_stops import EndStopFacts
 from stepgen.reference.ladder import Ladder
 from stepgen.reference.sequences import Pattern
 from stepgen.reference.timer import FASTEST_CYCLES, SETTINGS, SLOWEST_CYCLES, TimerSetting
@@ -40,6 +41,7 @@ class MotorFacts:
         ladder: The intervals that an axis climbs through, None for a motor that is none.
         cruise_256: The shortest interval that an axis accepts, in 1/256 clock, and that after Init.
         queue: How many destinations of an axis can wait.
+        end_stops: What keeps an axis within its limits, None without any.
     """
 
     phases: tuple[Pattern, ...]
@@ -57,6 +59,7 @@ class MotorFacts:
     ladder: Ladder | None = None
     cruise_256: int = 0
     queue: int = 0
+    end_stops: EndStopFacts | None = None
     slowest_cycles: int = SLOWEST_CYCLES
 
     def __post_init__(self) -> None:

@@ -4,7 +4,7 @@ When the step interrupt comes: the deadlines of the timer, and when each is serv
 
 from dataclasses import dataclass, field
 
-from stepgen.reference.facts import ServiceCycle, SetCycle
+from stepgen.reference.facts import ServiceCycle, SetCycle, served_at_once
 from stepgen.reference.stimuli import ChannelSet, ClockOn
 from stepgen.reference.timer import (
     FRACTIONS,
@@ -90,6 +90,12 @@ class Pace:
         """
         return self.interval is not None and self.interval.period_cycles >= HALF_ROUND_CYCLES
 
+    def serviced(self, deadline: int) -> int:
+        """
+        Return when *deadline* is served.
+        """
+        return self.service_cycle(deadline)
+
     def lateness_cycles(self, deadline: int) -> int:
         """
         Return how much later than *deadline* its service comes.
@@ -106,7 +112,7 @@ class Pace:
         deadline = self.deadline_cycle
         if deadline is None or deadline > cycle:
             return None
-        service = self.service_cycle(deadline)
+        service = self.serviced(deadline)
         if service < deadline:
             raise ValueError(f"deadline {deadline} served too early, at {service}")
         return deadline if service <= cycle else None
@@ -122,10 +128,28 @@ class FinePace(Pace):
     Args:
         interval_256: The interval in progress.
         fraction_256: What the deadline that ends it lacks of a whole clock, 0 to 255.
+        again_cycle: A pure function from a deadline that was put off to the cycle of its service.
+        put_off: The deadlines so far whose own interrupt made no step.
     """
 
     interval_256: int = 0
     fraction_256: int = 0
+    again_cycle: ServiceCycle = served_at_once
+    put_off: set[int] = field(default_factory=set)
+
+    def put_off_step(self, deadline: int) -> None:
+        """
+        Let the step of *deadline* wait for an interrupt of its own, which is asked for at once.
+        """
+        self.put_off.add(deadline)
+
+    def serviced(self, deadline: int) -> int:
+        """
+        Return when *deadline* is served, by its interrupt or, if it was put off, by the one after.
+        """
+        if deadline in self.put_off:
+            return self.again_cycle(deadline)
+        return self.service_cycle(deadline)
 
     def begin_256(self, interval_256: int) -> None:
         """

@@ -245,6 +245,45 @@ class SetPosition:
     position: int
 
 
+@dataclass(frozen=True)
+class Home:
+    """
+    A call of an axis to find the switch from which its positions count.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class EmergencyStop:
+    """
+    A call of an axis to make no step any more until the fault is cleared.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class ClearFault:
+    """
+    A call of an axis to forget why it moves no more.
+    """
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class Switches:
+    """
+    From this cycle on the limit switches of an axis at the ends *pressed* are pressed, no others.
+
+    An interrupt whose response begins in this cycle sees them so.
+    """
+
+    cycle: int
+    pressed: frozenset[str]
+
+
 Call = SetSpeed | Hold | Release | Init
 AxisCall = (
     MoveTo
@@ -258,8 +297,11 @@ AxisCall = (
     | Hold
     | Release
     | Init
+    | Home
+    | EmergencyStop
+    | ClearFault
 )
-AxisStimulus = AxisCall | ChannelSet | ClockOn | MillisTick
+AxisStimulus = AxisCall | Switches | ChannelSet | ClockOn | MillisTick
 Stimulus = Call | UpdateCheck | CallBack | KeepAlive | Callbacks | ClockOn | ChannelSet | MillisTick
 
 

@@ -16,6 +16,7 @@ from pydantic import (
 
 from stepgen.spec.base import SpecModel, short_form
 from stepgen.spec.drives import Drive
+from stepgen.spec.limits import Limits
 from stepgen.spec.motions import Motion
 from stepgen.spec.timings import Timing
 from stepgen.spec.turns import Ratio, Steps, StepsPerMm
@@ -171,6 +172,8 @@ class Motor(SpecModel):
     """What the coils do after a motion with an end."""
     port: Literal["shared", "owned"] = "shared"
     """Whether the sketch may write other bits of the motor's ports; `owned` is faster."""
+    limits: Limits | None = None
+    """Limit switches, the range of positions, and homing, of a motor with ramps."""
     budget: Budget | None = None
     """What it may take of the chip at most, else verification fails."""
     max_steps_per_second: Ratio | None = None

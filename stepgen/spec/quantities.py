@@ -1,5 +1,5 @@
 """
-Speeds, accelerations and jerks: in steps, or in millimetres, degrees or turns of what moves.
+Speeds, accelerations, jerks, ways and places: in steps, or millimetres, degrees or turns.
 """
 
 import re
@@ -12,13 +12,15 @@ from stepgen.spec.turns import as_ratio
 
 Unit = Literal["steps", "mm", "deg", "turns"]
 
+_LENGTH_WORDS = re.compile(r"(?P<number>\S+) *(?P<unit>steps|mm|deg|turns)")
 _WORDS = re.compile(r"(?P<number>\S+) *(?P<unit>steps|mm|deg|turns)(?P<per>/s(\^[23])?)")
+_NO_PLACE = "is no number of steps; write one, or such as 50 mm, -90 deg or 1.5 turns"
 
 
 @dataclass(frozen=True)
 class Quantity:
     """
-    A number of a unit per second, per second squared or cubed: exactly as it was written.
+    A number of a unit, or of it per second, squared or cubed: exactly as it was written.
     """
 
     number: Fraction
@@ -44,6 +46,34 @@ def _quantity(value: Any, per: str) -> Quantity:  # noqa: ANN401 - whatever the 
     return Quantity(as_ratio(value))
 
 
+def _place(value: Any) -> Quantity:  # noqa: ANN401 - whatever the YAML held
+    """
+    Return where *value* is: a number with a sign, or 0.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ValueError(_NO_PLACE)  # noqa: TRY004 - for pydantic
+    words = _LENGTH_WORDS.fullmatch(str(value).strip() + ("" if _has_unit(value) else " steps"))
+    if words is None:
+        raise ValueError(_NO_PLACE)
+    number = words["number"]
+    sign = -1 if number.startswith("-") else 1
+    size = number.removeprefix("-")
+    is_zero = re.fullmatch(r"0+(\.0+)?", size)
+    unit: Any = words["unit"]
+    return Quantity(Fraction(0) if is_zero else sign * as_ratio(size), unit)
+
+
+def _has_unit(value: float | str) -> bool:
+    return isinstance(value, str) and " " in value.strip()
+
+
+def _way(value: Any) -> Quantity:  # noqa: ANN401 - whatever the YAML held
+    way = _place(value)
+    if way.number <= 0:
+        raise ValueError("is no way; write one above 0, such as 5 mm")
+    return way
+
+
 def _speed(value: Any) -> Quantity:  # noqa: ANN401 - whatever the YAML held
     return _quantity(value, "/s")
 
@@ -64,3 +94,9 @@ Acceleration = Annotated[Quantity, short_form(_acceleration, int | float | str)]
 
 Jerk = Annotated[Quantity, short_form(_jerk, int | float | str)]
 """A positive jerk: a number of steps/s^3, or such as ``2000 mm/s^3``."""
+
+Place = Annotated[Quantity, short_form(_place, int | float | str)]
+"""A position: a number of steps, or such as ``-2 mm``."""
+
+Way = Annotated[Quantity, short_form(_way, int | float | str)]
+"""How far, above 0: a number of steps, or such as ``5 mm``."""

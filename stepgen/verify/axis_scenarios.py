@@ -5,10 +5,13 @@ Scenarios for axes: moves of all lengths, queues, refusals, and all axes at once
 from collections.abc import Iterator, Sequence
 
 from stepgen.plan.model import Plan
+from stepgen.reference.ladder import Ladder
 from stepgen.reference.timer import FRACTIONS
 from stepgen.verify.axis_flight_scenarios import InFlight
+from stepgen.verify.axis_limit_scenarios import AtLimits
 from stepgen.verify.axis_sketch import BUDGET_CYCLES, FURTHEST, SETTLE_CYCLES, AxisSketch
 from stepgen.verify.bench import Call, CallKind, Loop
+from stepgen.verify.end_stops import planned_limits
 from stepgen.verify.ladders import ladder_of
 from stepgen.verify.scenarios import Action, Scenario, Wait
 
@@ -19,6 +22,8 @@ _SHORT_MOVES = 60
 def axis_scenarios(plan: Plan) -> Iterator[Scenario]:
     """
     Yield the scenarios for each axis of *plan*, and for all of them together.
+
+    An axis that has a range begins in the middle of it.
     """
     axes = [
         (index, ladder)
@@ -26,9 +31,9 @@ def axis_scenarios(plan: Plan) -> Iterator[Scenario]:
         if (ladder := ladder_of(motor.motion))
     ]
     for index, ladder in axes:
-        for kind in (FromRest(plan, index, ladder), InFlight(plan, index, ladder)):
+        for kind in _kinds(plan, index, ladder):
             for name, loop, actions in kind.scenarios():
-                yield Scenario(f"{kind.name}: {name}", loop, tuple(actions))
+                yield Scenario(f"{kind.name}: {name}", loop, (*kind.begin(), *actions))
     if len(axes) > 1:
         sketches = [AxisSketch(plan, index, ladder) for index, ladder in axes]
         yield Scenario("all axes at once", Loop.BUSY, tuple(_together(sketches)))
@@ -206,6 +211,14 @@ class FromRest(AxisSketch):
         yield self.pace(3 * self.cruise_256)
         yield Wait(self.clocks(steps, 3 * self.cruise_256))
         yield self.read
+
+
+def _kinds(plan: Plan, index: int, ladder: Ladder) -> Iterator[FromRest | InFlight | AtLimits]:
+    yield FromRest(plan, index, ladder)
+    yield InFlight(plan, index, ladder)
+    limits = planned_limits(plan.motors[index])
+    if limits:
+        yield AtLimits(plan, index, ladder, limits)
 
 
 def _together(axes: Sequence[AxisSketch]) -> Iterator[Action]:

@@ -25,6 +25,7 @@ class AxisSketch:
         motor = plan.motors[index]
         self.name = motor.name
         self.index = index
+        self.range = motor.end_stops.range if motor.end_stops else None
         self.queue = motor.motion.queue
         self.cruise_256 = motor.motion.cruise_interval_256
         self.ladder = ladder
@@ -32,6 +33,13 @@ class AxisSketch:
         goal = self.ladder.levels[self.ladder.goal(self.cruise_256)]
         self.ramp_steps = goal.height
         self.first = self.ladder.first_interval_256 // FRACTIONS
+
+    def begin(self) -> Iterator[Action]:
+        """
+        Begin where there is room either way.
+        """
+        if self.range:
+            yield self.call(CallKind.SET_POSITION, sum(self.range) // 2)
 
     def call(self, kind: CallKind, steps: int = 0) -> Call:
         """

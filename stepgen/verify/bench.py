@@ -10,13 +10,15 @@ from typing import Self
 
 from stepgen.devices import Register, Timer16
 from stepgen.errors import StepgenError
+from stepgen.plan.end_stops import EndStops
 from stepgen.plan.model import MotorPlan, Plan, TimerPlan
-from stepgen.verify.events import Events
-from stepgen.verify.simulators import SIMAVR, Simulator
+from stepgen.verify.events import Events, Kind
+from stepgen.verify.simulators import SIMAVR, Machine, Simulator
 
-_MAILBOX = Struct("<BBBBIIIHHHbBiHBBBiiiBI")
+_MAILBOX = Struct("<BBBBIIIHHHbBiHBBBiiiBIBBB")
 _DELAY = Struct("<H")
 _RESULT, _WITHIN, _STEPS, _TOP_HIGH = 10, 15, 17, 21  # their places in the mailbox
+_LIMITS = 3  # bytes at its end that tell of limits
 _LOOP_OFFSET = 2
 _DELAY_OFFSET = 20
 _NO_CALL = 11  # the sketch goes through all of a call, but calls nothing
@@ -26,6 +28,7 @@ _WITHIN_OFFSET = 31
 # So long before its moment an exact call is handed over: more than the sketch's loop takes.
 APPROACH_CYCLES = 400
 _SETUP_CYCLES = 2_000_000
+_RECENT_EVENTS = 400
 _ANSWER_CYCLES = 1_000_000
 
 
@@ -69,6 +72,9 @@ class CallKind(IntEnum):
     WATCHDOG is one of the library's functions about it, by *control*: a `Watchdog`.
     DIVIDE_CLOCK sets CLKPR: the clock is divided by 2 to the power of *control*. The last two
     give their result as the position.
+
+    PRESS is no call: from outside, the switches of the axis named in *control* are pressed, 1 the
+    low and 2 the high one, and the others let go; never while its step interrupt runs.
     """
 
     SET_SPEED = 1
@@ -93,6 +99,10 @@ class CallKind(IntEnum):
     SET_PACE = 22
     QUEUE_MOVE_TO = 23
     SET_POSITION = 24
+    HOME = 25
+    EMERGENCY_STOP = 26
+    CLEAR_FAULT = 27
+    PRESS = 28
 
 
 class Watchdog(IntEnum):
@@ -105,18 +115,25 @@ class Watchdog(IntEnum):
     FIRED = 2
 
 
+SWITCH_BITS = {"low": 1, "high": 2}
+"""What the control of PRESS has for the switch of each end, and what is read of them."""
+
 SWITCHING = frozenset({CallKind.HOLD, CallKind.RELEASE})
 """The calls that a motor does not have where nothing can switch its coils."""
 
 OF_NO_MOTOR = frozenset(
     kind
     for kind in CallKind
-    if CallKind.HOLD_UP <= kind <= CallKind.CLOCKS_PER_SECOND or kind is CallKind.WATCHDOG
+    if CallKind.HOLD_UP <= kind <= CallKind.CLOCKS_PER_SECOND
+    or kind in {CallKind.WATCHDOG, CallKind.PRESS}
 )
-"""The calls of the library as a whole, of avr-libc or of the sketch."""
+"""The calls of the library as a whole, of avr-libc or of the sketch, and what is no call."""
 
-OF_AXES = frozenset(kind for kind in CallKind if kind >= CallKind.MOVE_TO)
-"""The calls that only an axis has."""
+OF_LIMITS = frozenset(kind for kind in CallKind if kind >= CallKind.HOME)
+"""The calls that only an axis with limits has, and what happens to it."""
+
+OF_AXES = frozenset(kind for kind in CallKind if CallKind.MOVE_TO <= kind < CallKind.HOME)
+"""The calls that every axis has, and only an axis."""
 
 OF_EVERY_MOTOR = SWITCHING | {CallKind.READ, CallKind.INIT}
 """The calls that an axis and other motors have."""
@@ -135,9 +152,19 @@ def has_call(motor: MotorPlan, kind: CallKind) -> bool:
     """
     if kind is CallKind.QUEUE_MOVE_TO and is_axis(motor):
         return motor.motion.queue > 0
+    if kind in OF_LIMITS:
+        return _limits_have(motor.end_stops, kind)
     if kind in OF_EVERY_MOTOR | OF_NO_MOTOR:
         return kind not in SWITCHING or motor.switches_current
     return (kind in OF_AXES) == is_axis(motor)
+
+
+def _limits_have(stops: EndStops | None, kind: CallKind) -> bool:
+    if stops is None:
+        return False
+    if kind is CallKind.HOME:
+        return stops.homing is not None
+    return kind is not CallKind.PRESS or bool(stops.switches)
 
 
 @dataclass(frozen=True)
@@ -177,6 +204,9 @@ class Answer:
     target: int = 0
     distance: int = 0
     running: int = 0
+    fault: int = 0
+    homed: int = 0
+    pressed: int = 0
 
 
 @dataclass
@@ -206,6 +236,8 @@ class Bench:
         self._patience_cycles = 1
         if not self.machine.run_until_mark(_MARK_READY, limit_cycles=_SETUP_CYCLES):
             raise StepgenError.of("the sketch never came out of setup()", place=str(self.elf))
+        for motor in self.plan.motors:
+            drive_switches(self.machine, motor)
 
     def __enter__(self) -> Self:
         return self
@@ -249,6 +281,8 @@ class Bench:
         Raises:
             StepgenError: The sketch did not get round to it, or did not return.
         """
+        if call.kind is CallKind.PRESS:
+            return self._press(call)
         self.machine.write_ram(self._mailbox, mail(call, self._loop))
         if self._loop is Loop.EXACT:
             now = self._run_to_mark(_MARK_MET, call)
@@ -267,6 +301,20 @@ class Bench:
         self._due_cycle = self.answers[-1].end_cycle
         return self.answers[-1]
 
+    def _press(self, call: Call) -> Answer:
+        """
+        Press the switches that *call* names, and let go the others, at a moment that is no matter.
+        """
+        motor = self.plan.motors[call.motor]
+        vector = self.plan.board.mcu.vector(motor.timing.vector).number
+        while is_running(self.machine.events()[-_RECENT_EVENTS:], vector):
+            self.machine.run_until(self.machine.cycle + 1)
+        drive_switches(self.machine, motor, call.control)
+        now = self.machine.cycle
+        # It takes no time, in which an interrupt of the sketch could be masked.
+        self.answers.append(Answer(call, now, now - 1, 0, 0, 0))
+        return self.answers[-1]
+
     def _go_within(self, call: Call, begin: int) -> bool:
         """
         Run until a callback or an interrupt makes *call*; return False if no callback was due.
@@ -279,7 +327,8 @@ class Bench:
 
     def _answer(self, call: Call, begin: int, end: int) -> Answer:
         seen = _MAILBOX.unpack(self.machine.read_ram(self._mailbox, _MAILBOX.size))
-        return Answer(call, begin, end, *seen[_RESULT:_WITHIN], *seen[_STEPS + 1 : _TOP_HIGH])
+        state = (*seen[_STEPS + 1 : _TOP_HIGH], *seen[-_LIMITS:])
+        return Answer(call, begin, end, *seen[_RESULT:_WITHIN], *state)
 
     def come_back(self, limit_cycles: int) -> bool:
         """
@@ -335,7 +384,26 @@ def mail(call: Call, loop: Loop) -> bytes:
     within = 0 if call.context is Context.LOOP else call.kind
     answer = (0,) * (_WITHIN - _RESULT)
     more = (within, call.context, call.steps)
-    return _MAILBOX.pack(*arguments, 0, *answer, *more, 0, 0, 0, top_high)
+    return _MAILBOX.pack(*arguments, 0, *answer, *more, 0, 0, 0, top_high, *(0,) * _LIMITS)
+
+
+def drive_switches(machine: Machine, motor: MotorPlan, pressed: int = 0) -> None:
+    """
+    Press the limit switches of *motor* that *pressed* names, as PRESS does, and let go the others.
+    """
+    for switch in motor.end_stops.switches if motor.end_stops else ():
+        is_pressed = bool(pressed & SWITCH_BITS[switch.end])
+        high = is_pressed == switch.active_high
+        machine.drive_pin(switch.register.address, switch.pin.bit.bit, high=high)
+
+
+def is_running(events: Events, vector: int) -> bool:
+    """
+    Tell whether at the end of *events* the interrupt *vector* runs.
+    """
+    own = events[events["source"] == vector]
+    own = own[(own["kind"] == Kind.ISR_ENTER) | (own["kind"] == Kind.ISR_EXIT)]
+    return bool(len(own)) and bool(own["kind"][-1] == Kind.ISR_ENTER)
 
 
 def watched_registers(plan: Plan) -> list[int]:

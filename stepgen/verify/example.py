@@ -9,7 +9,7 @@ import numpy as np
 
 from stepgen.plan.model import Plan
 from stepgen.spec import LoadedSpec
-from stepgen.verify.bench import Answer, Call, CallKind, watched_registers
+from stepgen.verify.bench import Answer, Call, CallKind, drive_switches, watched_registers
 from stepgen.verify.compare import Scene, compare
 from stepgen.verify.events import Events, Kind
 from stepgen.verify.scenarios import BACK, DRIVE
@@ -35,6 +35,8 @@ def run_example(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[str, ...]:
         elf, mcu=plan.board.mcu.name, f_cpu_hz=f_cpu_hz, watch=watched_registers(plan)
     ) as machine:
         machine.fine = True
+        for motor in plan.motors:
+            drive_switches(machine, motor)
         machine.run_until(_RUN_SECONDS * f_cpu_hz)
         trace = Trace(_without_empty_sections(machine.events()), plan.board.mcu)
         until = machine.cycle

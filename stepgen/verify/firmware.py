@@ -44,6 +44,7 @@ class BenchView:
     arguments: dict[str, str]
     inits: tuple[str, ...]
     axes: bool
+    guards: bool
     limits: bool
     long_periods: bool
 
@@ -149,6 +150,7 @@ def _bench_view(plan: Plan) -> BenchView:
         arguments=arguments,
         inits=tuple(m.name + ("Init" if is_axis(m) else "ShieldInit") for m in plan.motors),
         axes=len(arguments) < len(plan.motors),
+        guards=any(motor.end_stops for motor in plan.motors),
         limits=bool(arguments),
         long_periods=has_long_periods(plan),
         free_bits=tuple(bits),
@@ -161,8 +163,9 @@ def _free_masks(plan: Plan) -> dict[str, int]:
     used: dict[str, int] = {}
     owned: set[str] = set()
     for motor in plan.motors:
-        for wire in motor.drive.every_wire:
-            bit = wire.pin.bit
+        switches = motor.end_stops.switches if motor.end_stops else ()
+        for pin in (*(w.pin for w in motor.drive.every_wire), *(s.pin for s in switches)):
+            bit = pin.bit
             used[bit.port] = used.get(bit.port, 0) | 1 << bit.bit
         if motor.owns_ports:
             owned.update(wire.pin.bit.port for wire in motor.drive.wires)

@@ -14,9 +14,12 @@ from stepgen.reference.stimuli import (
     CallBack,
     Callbacks,
     ChannelSet,
+    ClearFault,
     ClockOn,
+    EmergencyStop,
     Halt,
     Hold,
+    Home,
     Init,
     KeepAlive,
     MillisTick,
@@ -30,9 +33,10 @@ from stepgen.reference.stimuli import (
     SetSpeed,
     Stimulus,
     Stop,
+    Switches,
     UpdateCheck,
 )
-from stepgen.verify.bench import Answer, CallKind
+from stepgen.verify.bench import SWITCH_BITS, Answer, CallKind
 from stepgen.verify.subject import Subject
 from stepgen.verify.trace import Trace
 
@@ -40,11 +44,14 @@ from stepgen.verify.trace import Trace
 class Order(IntEnum):
     """
     What comes first in one cycle: a call sees the new millis, a clock is set by the call.
+
+    What is pressed from outside comes before all, since an interrupt that begins there sees it.
     """
 
-    MILLIS = 0
-    CALL = 1
-    CLOCK = 2
+    PRESS = 0
+    MILLIS = 1
+    CALL = 2
+    CLOCK = 3
 
 
 @dataclass(frozen=True)
@@ -120,8 +127,44 @@ class RunningRead:
     answer: Answer
 
 
+@dataclass(frozen=True)
+class FaultRead:
+    """
+    The same call reads why an axis moves no more.
+    """
+
+    answer: Answer
+
+
+@dataclass(frozen=True)
+class HomedRead:
+    """
+    The same call reads whether the axis has found home.
+    """
+
+    answer: Answer
+
+
+@dataclass(frozen=True)
+class PressedRead:
+    """
+    The same call reads which switches are pressed.
+    """
+
+    answer: Answer
+
+
 Read = (
-    StatusRead | PositionRead | MissedRead | TimeoutRead | TargetRead | DistanceRead | RunningRead
+    StatusRead
+    | PositionRead
+    | MissedRead
+    | TimeoutRead
+    | TargetRead
+    | DistanceRead
+    | RunningRead
+    | FaultRead
+    | HomedRead
+    | PressedRead
 )
 Happening = Told | Read
 Row = tuple[int, Order, Happening]
@@ -165,7 +208,10 @@ def masked_reads(facts: MotorFacts) -> tuple[type[Read], ...]:
     """
     missed = (MissedRead,) if facts.tells_missed else ()
     if facts.ladder is not None:
-        return (PositionRead, TargetRead, DistanceRead, RunningRead, *missed)
+        stops = facts.end_stops
+        fault = (FaultRead,) if stops else ()
+        homed = (HomedRead,) if stops and stops.homing else ()
+        return (PositionRead, TargetRead, DistanceRead, RunningRead, *missed, *fault, *homed)
     timed = (TimeoutRead,) if facts.command_timeout_millis is not None else ()
     return (StatusRead, PositionRead, *missed, *timed)
 
@@ -175,6 +221,11 @@ def _rows_of_call(answer: Answer, trace: Trace, facts: MotorFacts) -> Iterator[R
     Yield what the call of *answer* does, at the cycles where it switches the interrupts off.
     """
     kind, begin, end = answer.call.kind, answer.begin_cycle, answer.end_cycle
+    if kind is CallKind.PRESS:
+        bits = answer.call.control
+        pressed = frozenset(end for end, bit in SWITCH_BITS.items() if bits & bit)
+        yield begin, Order.PRESS, Told(Switches(begin, pressed))
+        return
     found = (trace.commit(begin, end, which) for which in range(masked_sections(kind, facts)))
     cycles = [section[0] for section in found if section]
     if kind is CallKind.SET_PACE and not cycles and answer.result:
@@ -182,6 +233,8 @@ def _rows_of_call(answer: Answer, trace: Trace, facts: MotorFacts) -> Iterator[R
     if kind is CallKind.READ:
         rows = zip(cycles, masked_reads(facts), strict=False)
         yield from ((cycle, Order.CALL, read(answer)) for cycle, read in rows)
+        if facts.end_stops and facts.end_stops.switches:
+            yield end, Order.CALL, PressedRead(answer)  # they stay as they are meanwhile
     elif cycles and (stimulus := _stimulus(answer, cycles[0])):
         yield cycles[0], Order.CALL, Told(stimulus, answer)
         if kind is CallKind.UPDATE_CHECK:
@@ -211,5 +264,8 @@ def _stimulus(answer: Answer, cycle: int) -> Stimulus | AxisStimulus | None:
         CallKind.SET_PACE: SetPace(cycle, call.top % UINT32_STATES),
         CallKind.QUEUE_MOVE_TO: QueueMoveTo(cycle, call.steps),
         CallKind.SET_POSITION: SetPosition(cycle, call.steps),
+        CallKind.HOME: Home(cycle),
+        CallKind.EMERGENCY_STOP: EmergencyStop(cycle),
+        CallKind.CLEAR_FAULT: ClearFault(cycle),
     }
     return stimuli.get(call.kind)

@@ -15,11 +15,14 @@ from stepgen.reference.sharing import Need
 from stepgen.reference.stimuli import AxisStimulus, Edge, MillisTick, Stimulus
 from stepgen.reference.timer import COMPARE_PRESCALER, TimerSetting
 from stepgen.reference.trapezoid import Start, TrapezoidModel
-from stepgen.verify.bench import Answer
+from stepgen.verify.bench import SWITCH_BITS, Answer
 from stepgen.verify.happenings import (
     DistanceRead,
+    FaultRead,
+    HomedRead,
     MissedRead,
     PositionRead,
+    PressedRead,
     Read,
     RunningRead,
     StatusRead,
@@ -100,14 +103,25 @@ class Oracle:
         self._raised = [run.raised for run in runs]
         self._runs = runs
         self._sets = _first_sets(subject, scene.trace, runs)
-        model = TrapezoidModel if subject.is_axis else MotorModel
-        self._model = model(subject.facts, self._service_cycle, set_cycle=self._set_cycle)
+        self._model = self._made_model()
         # Each model understands what happens to its kind of motor.
         self._apply: Callable[[Any], int] = self._model.apply
         self._edges: list[Edge] = []
         self._millis = 0
         self._own: set[int] = set()
         self._later: dict[int, int] = {}
+        self._again: dict[int, Run] = {}
+
+    def _made_model(self) -> MotorModel | TrapezoidModel:
+        facts = self._subject.facts
+        if not self._subject.is_axis:
+            return MotorModel(facts, self._service_cycle, set_cycle=self._set_cycle)
+        return TrapezoidModel(
+            facts,
+            self._service_cycle,
+            set_cycle=self._set_cycle,
+            again_cycle=self._again_cycle,
+        )
 
     def predict(self, result: Comparison) -> list[Edge]:
         """
@@ -157,10 +171,17 @@ class Oracle:
     def served(self, runs: Sequence[Run]) -> list[Run]:
         """
         Return *runs*, those that served a later deadline in place of their own as if raised at it.
+
+        Those that only met a switch are left out: the step of their deadline is that of the next.
         """
         later = self._later
+        runs = [run for run in runs if run.raised not in self._again]
         return [
-            run._replace(raised=later[run.raised], serves_later=True)
+            run._replace(
+                raised=later[run.raised],
+                serves_later=True,
+                put_off=later[run.raised] in self._again,
+            )
             if run.raised in later
             else run
             for run in runs
@@ -182,6 +203,23 @@ class Oracle:
             return max(deadline, before.entered)
         # Nobody served it. A call that masks the interrupts before it could be served comes first.
         return self._scene.trace.served_from(deadline)
+
+    def _again_cycle(self, deadline: int) -> int:
+        """
+        Return when the interrupt comes that the one of *deadline* asks for, since it met a switch.
+        """
+        if deadline in self._again:
+            return self._again[deadline].entered
+        met = self._service_cycle(deadline)
+        place = next((n for n, run in enumerate(self._runs) if run.entered == met), None)
+        if place is None or place + 1 >= len(self._runs):
+            return self._scene.until_cycle + 1
+        own, following = self._runs[place], self._runs[place + 1]
+        if own.writes or following.raised > own.left + _AT_ONCE_CYCLES:
+            return own.left + _AT_ONCE_CYCLES  # it did not ask for one
+        self._again[own.raised] = following
+        self._later[following.raised] = deadline
+        return following.entered
 
     def _is_own(self, place: int, latest_cycle: int) -> bool:
         """
@@ -211,8 +249,9 @@ class Oracle:
         """
         Return when the interrupt that served *deadline* has set its channel for the next.
         """
-        service = self._service_cycle(deadline)
-        return self._sets.get(service)
+        put_off = deadline in self._again
+        serve = self._again_cycle if put_off else self._service_cycle
+        return self._sets.get(serve(deadline))
 
     def _serves_later(self, run: Run, deadline: int) -> bool:
         """
@@ -254,18 +293,37 @@ class Oracle:
                 text, seen, known = "position {}", answer.position, model.position
             case MissedRead(), _:
                 text, seen, known = "{} missed", answer.missed, model.overruns
-            case TargetRead(), TrapezoidModel():
-                text, seen, known = "target {}", answer.target, model.target
-            case DistanceRead(), TrapezoidModel():
-                text, seen, known = "distance {}", answer.distance, model.distance
-            case RunningRead(), TrapezoidModel():
-                text, seen, known = "running {}", answer.running, int(model.running)
+            case _, TrapezoidModel():
+                text, seen, known = _read_of_axis(read, model)
             case _:
                 raise TypeError(f"no motor of this kind can be asked for {read}")
         if seen != known:
             told = text.format(seen)
             number = "{:#04x}" if isinstance(read, StatusRead) else "{}"
             result.report(f"{told} at cycle {cycle}, the model says {number.format(known)}")
+
+
+def _read_of_axis(read: Read, model: TrapezoidModel) -> tuple[str, int, int]:
+    """
+    Return what was read of an axis, in words, what it was, and what *model* says.
+    """
+    answer = read.answer
+    match read:
+        case TargetRead():
+            return "target {}", answer.target, model.target
+        case DistanceRead():
+            return "distance {}", answer.distance, model.distance
+        case RunningRead():
+            return "running {}", answer.running, int(model.running)
+        case FaultRead():
+            return "fault {}", answer.fault, int(model.fault)
+        case HomedRead():
+            return "homed {}", answer.homed, int(model.homed)
+        case PressedRead():
+            bits = sum(SWITCH_BITS[end] for end in model.pressed)
+            return "switches {}", answer.pressed, bits
+        case _:
+            raise TypeError(f"no axis can be asked for {read}")
 
 
 def _first_sets(subject: Subject, trace: Trace, runs: Sequence[Run]) -> dict[int, int]:

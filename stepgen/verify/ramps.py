@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from stepgen.plan.model import MotorPlan, Plan
+from stepgen.plan.model import Plan
 from stepgen.reference.ramp import WORST_ERROR, Wish, errors
 from stepgen.spec import LoadedSpec
 from stepgen.verify.ladders import ladder_of
 from stepgen.verify.report import SpecReport
+from stepgen.verify.units import steps_in
 
 _NAME = "the ramp against ideal physics"
 
@@ -27,7 +28,7 @@ def judge_ramps(loaded: LoadedSpec, plan: Plan, report: SpecReport) -> None:
             continue
         asked: Any = loaded.spec.motors[planned.name].motion
         start, cruise, acceleration, jerk = (
-            wanted.number * _steps_in(wanted.unit, planned) if wanted else Fraction(0)
+            wanted.number * steps_in(wanted.unit, planned) if wanted else Fraction(0)
             for wanted in (asked.start_speed, asked.cruise_speed, asked.acceleration, asked.jerk)
         )
         wish = Wish(plan.board.f_cpu_hz, start, cruise, acceleration, jerk or None)
@@ -39,16 +40,6 @@ def judge_ramps(loaded: LoadedSpec, plan: Plan, report: SpecReport) -> None:
             f"{found.steps} steps, each within {float(found.speed):.4%} of its speed; the ramp is "
             f"{float(found.late_clocks):+.0f} clocks off, {float(found.time):.4%} of its length",
         )
-
-
-def _steps_in(unit: str, motor: MotorPlan) -> Fraction:
-    """
-    Return how many steps of *motor* one of *unit* is.
-    """
-    if unit == "steps":
-        return Fraction(1)
-    per = motor.steps_per_mm if unit == "mm" else motor.steps_per_turn
-    return Fraction(per or 0) / (360 if unit == "deg" else 1)
 
 
 def _findings(speed: Fraction, time: Fraction) -> Iterator[str]:

@@ -184,7 +184,8 @@ def _late_edges(
         thinks = motor.motion.changes_speed or (
             call.control & Control.ENDPOINT_MILLIS and call.limit
         )
-        latest = motor.isr_bound_cycles if thinks else path.boundary_edge_cycles + WAKE_CYCLES
+        edge = path.boundary_edge_cycles + path.pressed_cycles + WAKE_CYCLES
+        latest = motor.isr_bound_cycles if thinks else edge
         missed = subject.facts.overrun_cycles
         overrun = missed is not None and run.entered - run.raised >= missed
         latest += motor.gate.late_cycles if overrun or run.serves_later else 0

@@ -31,6 +31,12 @@ from stepgen.verify.scenario_model import (
 from stepgen.verify.scenarios import Action, Scenario, Wait
 
 _OF_UPDATE_EVENTS = {CallKind.UPDATE_CHECK, CallKind.CALLBACKS}
+_OF_LIMITS = {
+    CallKind.HOME: " with `homing`",
+    CallKind.EMERGENCY_STOP: "",
+    CallKind.CLEAR_FAULT: "",
+    CallKind.PRESS: " with a switch",
+}
 _WAY_OUT = "give it `motion: update-events`, or leave this out"
 
 
@@ -165,6 +171,8 @@ def _way_to_call(motor: MotorPlan, kind: CallKind) -> str:
         return "give it `motion: {kind: trapezoid, ...}`, or write set_speed"
     if kind is CallKind.QUEUE_MOVE_TO:
         return "give its motion a `queue`, or write move_to"
+    if kind in _OF_LIMITS:
+        return f"give it `limits`{_OF_LIMITS[kind]}, or leave this out"
     return "write move_to, run_forward, stop or another of those of an axis"
 
 

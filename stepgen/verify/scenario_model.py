@@ -28,6 +28,7 @@ _FIELDS: Mapping[CallKind, tuple[str, ...]] = MappingProxyType(
         CallKind.TOP_PER_SECOND: ("top",),
         CallKind.CLOCKS_PER_SECOND: (),
         CallKind.SET_PACE: ("motor", "top", "context"),
+        CallKind.PRESS: ("motor", "control"),
         **dict.fromkeys(
             (CallKind.MOVE_TO, CallKind.MOVE, CallKind.QUEUE_MOVE_TO, CallKind.SET_POSITION),
             ("motor", "steps", "context"),
@@ -35,6 +36,7 @@ _FIELDS: Mapping[CallKind, tuple[str, ...]] = MappingProxyType(
     }
 )
 _CALLBACKS = {"REACHED": 1, "FAULT": 2}
+_ENDS = {"LOW": 1, "HIGH": 2}
 
 Bit = Literal[
     "DRV_EN",
@@ -47,6 +49,8 @@ Bit = Literal[
     "DIRECTION",
     "REACHED",
     "FAULT",
+    "LOW",
+    "HIGH",
 ]
 
 
@@ -70,6 +74,8 @@ class CallStep(SpecModel):
     ``{call: set_speed, motor: pan, control: [DRV_EN], top: 20000, limit: 10}``.
 
     Of an axis ``{call: move_to, steps: -400}``, and in 1/256 clock ``{call: set_pace, top: 9999}``.
+    No call of the sketch is ``{call: press, control: [LOW]}``: it presses limit switches from
+    outside, and lets go those that are not named.
 
     A number for ``control`` is passed on as it is, also where the library must refuse it.
     """
@@ -97,6 +103,10 @@ class CallStep(SpecModel):
         "set_pace",
         "queue_move_to",
         "set_position",
+        "home",
+        "emergency_stop",
+        "clear_fault",
+        "press",
     ]
     motor: str | None = None
     control: ControlField = ()
@@ -183,7 +193,7 @@ def bits_of(kind: CallKind) -> Mapping[str, int]:
     """
     if kind is CallKind.SET_SPEED:
         return {str(bit.name): int(bit) for bit in Control}
-    return _CALLBACKS if kind is CallKind.CALLBACKS else {}
+    return {CallKind.CALLBACKS: _CALLBACKS, CallKind.PRESS: _ENDS}.get(kind, {})
 
 
 def fields_of(kind: CallKind) -> tuple[str, ...]:

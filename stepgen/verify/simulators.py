@@ -165,6 +165,7 @@ SIMAVR = Simulator(
         | {"late-compare-shows", "fast-pwm-icr-period", "ctc-icr-period", "ctc-wrap"}
         | {"compare-pins", "compare-pin-edges", "compare-force"}
         | {
+            "driven-input",
             "pin-writes",
             "pin-writes-1280",
             "pin-writes-2560",

@@ -20,6 +20,7 @@ from stepgen.spec import LoadedSpec, Motor
 from stepgen.verify.bench import compare_channel
 from stepgen.verify.drives import DriveFacts, drive_facts
 from stepgen.verify.elf import read_firmware
+from stepgen.verify.end_stops import end_stop_facts
 from stepgen.verify.ladders import ladder_of
 from stepgen.verify.trace import ClockStart, PortState, Run, Trace
 
@@ -127,6 +128,7 @@ def subjects(loaded: LoadedSpec, plan: Plan, elf: Path) -> tuple[Subject, ...]:
         drive = replace(drive, pulse=pulse)
         facts = _facts(motors[name], drive, plan, timing, shares_enables=bool(shared))
         facts = _with_ladder(facts, planned)
+        facts = replace(facts, end_stops=end_stop_facts(motors[name], planned, plan.board.f_cpu_hz))
         vector = plan.board.mcu.vector(planned.timing.vector).number
         overrun = planned.hot_path.overrun_cycles
         saved = _jump_saved_cycles(image, vector)

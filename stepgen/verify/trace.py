@@ -41,6 +41,7 @@ class Run(NamedTuple):
         left: Cycle after RETI.
         writes: What it wrote to the ports, in order.
         serves_later: Whether *raised* is that of a later deadline, served in place of its own.
+        put_off: Whether the interrupt of that deadline has left the step to this one.
     """
 
     raised: int
@@ -49,6 +50,7 @@ class Run(NamedTuple):
     left: int
     writes: tuple[PortState, ...]
     serves_later: bool = False
+    put_off: bool = False
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,16 @@ from hypothesis import strategies as st
 from stepgen import api
 from stepgen.errors import StepgenError
 from stepgen.plan.model import Plan
-from stepgen.verify.bench import OF_AXES, OF_EVERY_MOTOR, Call, CallKind, Context, Loop
+from stepgen.verify.bench import (
+    OF_AXES,
+    OF_EVERY_MOTOR,
+    OF_LIMITS,
+    Call,
+    CallKind,
+    Context,
+    Loop,
+    has_call,
+)
 from stepgen.verify.scenario_file import default_scenario, load_scenario, scenario_text
 from stepgen.verify.scenarios import Action, Scenario, Wait
 
@@ -22,6 +31,7 @@ TIMED = api.plan(SPECS / "uno_command_timeout.yaml")
 CHANGING = api.plan(SPECS / "uno_variable_speed.yaml")
 ALWAYS_ENABLED = api.plan(SPECS / "uno_drv8825.yaml")
 AXIS = api.plan(SPECS / "uno_trapezoid.yaml")
+HOMING = api.plan(SPECS / "uno_homing.yaml")
 BYTES, WORDS, LONGS = (st.integers(0, (1 << bits) - 1) for bits in (8, 16, 32))
 LINES = st.text(st.characters(exclude_categories=("C", "Zl", "Zp")), min_size=1, max_size=40)
 
@@ -30,8 +40,8 @@ def actions(plan: Plan) -> st.SearchStrategy[Action]:
     """
     Return waits, and all calls with all arguments that the motors of *plan* have.
     """
-    if plan is AXIS:
-        return axis_actions()
+    if plan in (AXIS, HOMING):
+        return axis_actions(plan)
     changes = plan.motors[0].motion.kind == "update-events"
     motors = st.integers(0, len(plan.motors) - 1)
     update = (LONGS, WORDS, WORDS) if changes else ()
@@ -54,13 +64,17 @@ def actions(plan: Plan) -> st.SearchStrategy[Action]:
     return st.one_of(every)
 
 
-def axis_actions() -> st.SearchStrategy[Action]:
+def axis_actions(plan: Plan) -> st.SearchStrategy[Action]:
     """
-    Return waits, and all calls of an axis with a queue, with all steps and paces.
+    Return waits, and all calls that the axis of *plan* has, with all steps and paces.
     """
     with_steps = [CallKind.MOVE_TO, CallKind.MOVE, CallKind.QUEUE_MOVE_TO, CallKind.SET_POSITION]
-    others = sorted({*OF_AXES, *OF_EVERY_MOTOR} - {*with_steps, CallKind.SET_PACE})
+    every = {*OF_AXES, *OF_EVERY_MOTOR, *OF_LIMITS} - {*with_steps, CallKind.SET_PACE}
+    others = sorted(kind for kind in every if has_call(plan.motors[0], kind))
+    others = [kind for kind in others if kind is not CallKind.PRESS]
+    presses = [st.builds(Call, st.just(CallKind.PRESS), control=st.integers(0, 255))]
     return st.one_of(
+        *(presses if has_call(plan.motors[0], CallKind.PRESS) else []),
         st.builds(Wait, st.integers(0, 1 << 40)),
         st.builds(Call, st.sampled_from(with_steps), steps=st.integers(-(1 << 31), (1 << 31) - 1)),
         st.builds(Call, st.just(CallKind.SET_PACE), top=LONGS),
@@ -76,7 +90,7 @@ def scenarios(plan: Plan) -> st.SearchStrategy[Scenario]:
     return st.builds(Scenario, LINES, st.sampled_from(Loop), steps)
 
 
-@given(data=st.data(), plan=st.sampled_from([CONSTANT, CHANGING, TIMED, AXIS]))
+@given(data=st.data(), plan=st.sampled_from([CONSTANT, CHANGING, TIMED, AXIS, HOMING]))
 def test_a_scenario_is_read_back_as_it_was_written(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject, plan: Plan
 ) -> None:
@@ -168,6 +182,9 @@ def test_a_byte_that_the_library_must_refuse_can_be_given_as_a_number(tmp_path: 
         (CONSTANT, "move_to", "give it `motion: {kind: trapezoid, ...}`, or write set_speed"),
         (CONSTANT, "stop", "give it `motion: {kind: trapezoid, ...}`, or write set_speed"),
         (AXIS, "set_speed", "write move_to, run_forward, stop or another of those of an axis"),
+        (AXIS, "home", "give it `limits` with `homing`, or leave this out"),
+        (AXIS, "press", "give it `limits` with a switch, or leave this out"),
+        (AXIS, "clear_fault", "give it `limits`, or leave this out"),
         (AXIS, "update_check", "write move_to, run_forward, stop or another of those of an axis"),
     ],
 )

@@ -712,14 +712,16 @@ int8_t xMove(int32_t steps) {
   return 0;
 }
 
-void xRunForward() {
+int8_t xRunForward() {
   const Masked masked;
   xAim(xPosition() + kFar, kEndless);
+  return 0;
 }
 
-void xRunBackward() {
+int8_t xRunBackward() {
   const Masked masked;
   xAim(xPosition() - kFar, kEndless);
+  return 0;
 }
 
 void xStop() {
@@ -728,12 +730,17 @@ void xStop() {
   GPIOR1 = comeToRest(xMotion, GPIOR1);
 }
 
-void xHalt() {
-  const Masked masked;
+// Lets no step come any more; the position is kept. Only while interrupts are off.
+static void xStopAtOnce() {
   xQueued = 0;
   auto &motion = near(xMotion);
   motion.end = motion.destination = xPosition();
   xRest();
+}
+
+void xHalt() {
+  const Masked masked;
+  xStopAtOnce();
 }
 
 int8_t xSetSpeed(uint32_t interval) {
@@ -1106,14 +1113,16 @@ int8_t yMove(int32_t steps) {
   return 0;
 }
 
-void yRunForward() {
+int8_t yRunForward() {
   const Masked masked;
   yAim(yPosition() + kFar, kEndless);
+  return 0;
 }
 
-void yRunBackward() {
+int8_t yRunBackward() {
   const Masked masked;
   yAim(yPosition() - kFar, kEndless);
+  return 0;
 }
 
 void yStop() {
@@ -1121,11 +1130,16 @@ void yStop() {
   yCount = comeToRest(yMotion, yCount);
 }
 
-void yHalt() {
-  const Masked masked;
+// Lets no step come any more; the position is kept. Only while interrupts are off.
+static void yStopAtOnce() {
   auto &motion = near(yMotion);
   motion.end = motion.destination = yPosition();
   yRest();
+}
+
+void yHalt() {
+  const Masked masked;
+  yStopAtOnce();
 }
 
 int8_t ySetSpeed(uint32_t interval) {
@@ -1559,14 +1573,16 @@ int8_t zMove(int32_t steps) {
   return 0;
 }
 
-void zRunForward() {
+int8_t zRunForward() {
   const Masked masked;
   zAim(zPosition() + kFar, kEndless);
+  return 0;
 }
 
-void zRunBackward() {
+int8_t zRunBackward() {
   const Masked masked;
   zAim(zPosition() - kFar, kEndless);
+  return 0;
 }
 
 void zStop() {
@@ -1574,12 +1590,17 @@ void zStop() {
   zCount = comeToRest(zMotion, zCount);
 }
 
-void zHalt() {
-  const Masked masked;
+// Lets no step come any more; the position is kept. Only while interrupts are off.
+static void zStopAtOnce() {
   auto &motion = near(zMotion);
   motion.end = motion.destination = zPosition();
   zCoilsOff();
   zRest();
+}
+
+void zHalt() {
+  const Masked masked;
+  zStopAtOnce();
 }
 
 int8_t zSetSpeed(uint32_t interval) {

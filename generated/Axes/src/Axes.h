@@ -72,13 +72,13 @@ int8_t xMoveTo(int32_t target);
 // The same, so many steps from where the motor is now.
 int8_t xMove(int32_t steps);
 
-// The same after the moves before it, each of which ends at rest; 8 can wait. Returns 0;
-// MOTOR_ERROR_QUEUE_FULL; or MOTOR_ERROR_RUNNING behind a run without an end.
+// The same after the moves before it, each of which ends at rest; 8 can wait. Returns 0,
+// MOTOR_ERROR_QUEUE_FULL or MOTOR_ERROR_RUNNING behind a run without an end.
 int8_t xQueueMoveTo(int32_t target);
 
-// Runs until something else is asked for.
-void xRunForward();
-void xRunBackward();
+// Runs until something else is asked for. Always returns 0.
+int8_t xRunForward();
+int8_t xRunBackward();
 
 // Slows down to rest, by the same ramp; where it then is becomes the target.
 void xStop();
@@ -88,7 +88,7 @@ void xStop();
 void xHalt();
 
 // The speed at which it cruises, now and from now on, in 1/256 clocks between two steps, such as
-// motorInterval(500). The spec's 16000 steps/s is the highest. Returns 0, or MOTOR_ERROR_TOO_FAST.
+// motorInterval(500). The spec's 16000 steps/s is the highest. Returns 0 or MOTOR_ERROR_TOO_FAST.
 int8_t xSetSpeed(uint32_t interval);
 
 // How many steps were due before the step before was made, since xInit(), because
@@ -105,7 +105,7 @@ int32_t xDistanceToGo();
 // Whether a step may still come.
 bool xIsRunning();
 
-// Gives the place where the motor is another number. Returns 0, or MOTOR_ERROR_RUNNING.
+// Gives the place where the motor is another number. Returns 0 or MOTOR_ERROR_RUNNING.
 int8_t xSetCurrentPosition(int32_t position);
 
 // Switches the coils on, to hold the motor where it stands, or off. Returns 0, or
@@ -156,9 +156,9 @@ int8_t yMoveTo(int32_t target);
 // The same, so many steps from where the motor is now.
 int8_t yMove(int32_t steps);
 
-// Runs until something else is asked for.
-void yRunForward();
-void yRunBackward();
+// Runs until something else is asked for. Always returns 0.
+int8_t yRunForward();
+int8_t yRunBackward();
 
 // Slows down to rest, by the same ramp; where it then is becomes the target.
 void yStop();
@@ -168,7 +168,7 @@ void yStop();
 void yHalt();
 
 // The speed at which it cruises, now and from now on, in 1/256 clocks between two steps, such as
-// motorInterval(500). The spec's 16000 steps/s is the highest. Returns 0, or MOTOR_ERROR_TOO_FAST.
+// motorInterval(500). The spec's 16000 steps/s is the highest. Returns 0 or MOTOR_ERROR_TOO_FAST.
 int8_t ySetSpeed(uint32_t interval);
 
 // How many steps were due before the step before was made, since yInit(), because
@@ -185,7 +185,7 @@ int32_t yDistanceToGo();
 // Whether a step may still come.
 bool yIsRunning();
 
-// Gives the place where the motor is another number. Returns 0, or MOTOR_ERROR_RUNNING.
+// Gives the place where the motor is another number. Returns 0 or MOTOR_ERROR_RUNNING.
 int8_t ySetCurrentPosition(int32_t position);
 
 // Switches the coils on, to hold the motor where it stands, or off. Returns 0, or
@@ -222,9 +222,9 @@ int8_t zMoveTo(int32_t target);
 // The same, so many steps from where the motor is now.
 int8_t zMove(int32_t steps);
 
-// Runs until something else is asked for.
-void zRunForward();
-void zRunBackward();
+// Runs until something else is asked for. Always returns 0.
+int8_t zRunForward();
+int8_t zRunBackward();
 
 // Slows down to rest, by the same ramp; where it then is becomes the target.
 void zStop();
@@ -234,7 +234,7 @@ void zStop();
 void zHalt();
 
 // The speed at which it cruises, now and from now on, in 1/256 clocks between two steps, such as
-// motorInterval(500). The spec's 4000 steps/s is the highest. Returns 0, or MOTOR_ERROR_TOO_FAST.
+// motorInterval(500). The spec's 4000 steps/s is the highest. Returns 0 or MOTOR_ERROR_TOO_FAST.
 int8_t zSetSpeed(uint32_t interval);
 
 // How many steps were due before the step before was made, since zInit(), because
@@ -251,7 +251,7 @@ int32_t zDistanceToGo();
 // Whether a step may still come.
 bool zIsRunning();
 
-// Gives the place where the motor is another number. Returns 0, or MOTOR_ERROR_RUNNING.
+// Gives the place where the motor is another number. Returns 0 or MOTOR_ERROR_RUNNING.
 int8_t zSetCurrentPosition(int32_t position);
 
 // Switches the coils on, to hold the motor where it stands, or off. Returns 0, or

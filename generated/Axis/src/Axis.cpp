@@ -725,14 +725,16 @@ int8_t slideMove(int32_t steps) {
   return 0;
 }
 
-void slideRunForward() {
+int8_t slideRunForward() {
   const Masked masked;
   slideAim(slidePosition() + kFar, kEndless);
+  return 0;
 }
 
-void slideRunBackward() {
+int8_t slideRunBackward() {
   const Masked masked;
   slideAim(slidePosition() - kFar, kEndless);
+  return 0;
 }
 
 void slideStop() {
@@ -741,13 +743,18 @@ void slideStop() {
   GPIOR1 = comeToRest(slideMotion, GPIOR1);
 }
 
-void slideHalt() {
-  const Masked masked;
+// Lets no step come any more; the position is kept. Only while interrupts are off.
+static void slideStopAtOnce() {
   slideQueued = 0;
   auto &motion = near(slideMotion);
   motion.end = motion.destination = slidePosition();
   slideCoilsOff();
   slideRest();
+}
+
+void slideHalt() {
+  const Masked masked;
+  slideStopAtOnce();
 }
 
 int8_t slideSetSpeed(uint32_t interval) {

@@ -69,9 +69,9 @@ int8_t slideMoveTo(int32_t target);
 // The same, so many steps from where the motor is now.
 int8_t slideMove(int32_t steps);
 
-// Runs until something else is asked for.
-void slideRunForward();
-void slideRunBackward();
+// Runs until something else is asked for. Always returns 0.
+int8_t slideRunForward();
+int8_t slideRunBackward();
 
 // Slows down to rest, by the same ramp; where it then is becomes the target.
 void slideStop();
@@ -81,7 +81,7 @@ void slideStop();
 void slideHalt();
 
 // The speed at which it cruises, now and from now on, in 1/256 clocks between two steps, such as
-// motorInterval(500). The spec's 4000 steps/s is the highest. Returns 0, or MOTOR_ERROR_TOO_FAST.
+// motorInterval(500). The spec's 4000 steps/s is the highest. Returns 0 or MOTOR_ERROR_TOO_FAST.
 int8_t slideSetSpeed(uint32_t interval);
 
 // How many steps were due before the step before was made, since slideInit(), because
@@ -98,7 +98,7 @@ int32_t slideDistanceToGo();
 // Whether a step may still come.
 bool slideIsRunning();
 
-// Gives the place where the motor is another number. Returns 0, or MOTOR_ERROR_RUNNING.
+// Gives the place where the motor is another number. Returns 0 or MOTOR_ERROR_RUNNING.
 int8_t slideSetCurrentPosition(int32_t position);
 
 // Switches the coils on, to hold the motor where it stands, or off. Returns 0, or

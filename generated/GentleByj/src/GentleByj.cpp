@@ -780,14 +780,16 @@ int8_t motorMove(int32_t steps) {
   return 0;
 }
 
-void motorRunForward() {
+int8_t motorRunForward() {
   const Masked masked;
   motorAim(motorPosition() + kFar, kEndless);
+  return 0;
 }
 
-void motorRunBackward() {
+int8_t motorRunBackward() {
   const Masked masked;
   motorAim(motorPosition() - kFar, kEndless);
+  return 0;
 }
 
 void motorStop() {
@@ -795,12 +797,17 @@ void motorStop() {
   GPIOR1 = comeToRest(motorMotion, GPIOR1);
 }
 
-void motorHalt() {
-  const Masked masked;
+// Lets no step come any more; the position is kept. Only while interrupts are off.
+static void motorStopAtOnce() {
   auto &motion = near(motorMotion);
   motion.end = motion.destination = motorPosition();
   motorCoilsOff();
   motorRest();
+}
+
+void motorHalt() {
+  const Masked masked;
+  motorStopAtOnce();
 }
 
 int8_t motorSetSpeed(uint32_t interval) {

@@ -96,9 +96,9 @@ int8_t motorMoveTo(int32_t target);
 // The same, so many steps from where the motor is now.
 int8_t motorMove(int32_t steps);
 
-// Runs until something else is asked for.
-void motorRunForward();
-void motorRunBackward();
+// Runs until something else is asked for. Always returns 0.
+int8_t motorRunForward();
+int8_t motorRunBackward();
 
 // Slows down to rest, by the same ramp; where it then is becomes the target.
 void motorStop();
@@ -108,7 +108,7 @@ void motorStop();
 void motorHalt();
 
 // The speed at which it cruises, now and from now on, in 1/256 clocks between two steps, such as
-// motorInterval(500). The spec's 1000 steps/s is the highest. Returns 0, or MOTOR_ERROR_TOO_FAST.
+// motorInterval(500). The spec's 1000 steps/s is the highest. Returns 0 or MOTOR_ERROR_TOO_FAST.
 int8_t motorSetSpeed(uint32_t interval);
 
 // How many steps were due before the step before was made, since motorInit(), because
@@ -125,7 +125,7 @@ int32_t motorDistanceToGo();
 // Whether a step may still come.
 bool motorIsRunning();
 
-// Gives the place where the motor is another number. Returns 0, or MOTOR_ERROR_RUNNING.
+// Gives the place where the motor is another number. Returns 0 or MOTOR_ERROR_RUNNING.
 int8_t motorSetCurrentPosition(int32_t position);
 
 // Switches the coils on, to hold the motor where it stands, or off. Returns 0, or

@@ -2,18 +2,15 @@
 What the planner knows of each motion: one module per kind, named like it.
 """
 
-from collections.abc import Mapping
-from fractions import Fraction
 from importlib import import_module
 
 from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Motion
+from stepgen.plan.scale import Scale
 from stepgen.spec import Motor
 
 
-def plan_motion(
-    motor: Motor, scale: Mapping[str, Fraction], f_cpu_hz: int, faults: Faults
-) -> Motion | None:
+def plan_motion(motor: Motor, scale: Scale, f_cpu_hz: int, faults: Faults) -> Motion | None:
     """
     Return what the motion of *motor* asks of the step interrupt.
 

@@ -2,11 +2,9 @@
 Constant speed: the step interrupt needs no clock but for a command time-out.
 """
 
-from collections.abc import Mapping
-from fractions import Fraction
-
 from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Motion
+from stepgen.plan.scale import Scale
 from stepgen.spec import Motor
 from stepgen.spec.motions.constant import Constant
 
@@ -14,9 +12,7 @@ _TIMED_CYCLES = 4  # of the handler: IN or LDS, TST and BREQ
 _TIMED_CALL_CYCLES = 20
 
 
-def plan(
-    spec: Constant, motor: Motor, _scale: Mapping[str, Fraction], _f_cpu_hz: int, _faults: Faults
-) -> Motion:
+def plan(spec: Constant, motor: Motor, _scale: Scale, _f_cpu_hz: int, _faults: Faults) -> Motion:
     """
     Return what the motion asks of the step interrupt.
     """

@@ -2,7 +2,6 @@
 Trapezoid: ramps from a table, a decision at the end of each row, and no look at the clock.
 """
 
-from collections.abc import Mapping
 from fractions import Fraction
 
 from stepgen.plan.curves import FRACTION, Speeds
@@ -15,6 +14,7 @@ from stepgen.plan.ladder import (
     Ladder,
     plan_ladder,
 )
+from stepgen.plan.scale import Scale
 from stepgen.spec import Motor
 from stepgen.spec.motions.trapezoid import Trapezoid
 from stepgen.spec.quantities import Quantity
@@ -27,7 +27,7 @@ _MOST_SPS = 1_000_000
 
 
 def plan(
-    spec: Trapezoid, motor: Motor, scale: Mapping[str, Fraction], f_cpu_hz: int, faults: Faults
+    spec: Trapezoid, motor: Motor, scale: Scale, f_cpu_hz: int, faults: Faults
 ) -> Motion | None:
     """
     Return what the motion asks of the step interrupt.
@@ -65,19 +65,13 @@ def _report_others(motor: Motor, faults: Faults) -> None:
             faults.at(field).report(f"is nothing that a motor with motion trapezoid has; {way_out}")
 
 
-def _speeds(spec: Trapezoid, scale: Mapping[str, Fraction], faults: Faults) -> Speeds | None:
+def _speeds(spec: Trapezoid, scale: Scale, faults: Faults) -> Speeds | None:
     """
     Return the speeds of *spec* in steps; None after reporting a unit that *scale* has not.
     """
 
     def in_steps(field: str, quantity: Quantity) -> Fraction | None:
-        if quantity.unit in scale:
-            return quantity.number * scale[quantity.unit]
-        needed = "steps_per_mm" if quantity.unit == "mm" else "steps_per_turn"
-        faults.at(field).report(
-            f"how many steps that is, nothing says; add `{needed}` to the motor, or write steps"
-        )
-        return None
+        return scale.steps(quantity, faults.at(field))
 
     start = in_steps("start_speed", spec.start_speed or Quantity(Fraction(0)))
     cruise = in_steps("cruise_speed", spec.cruise_speed)

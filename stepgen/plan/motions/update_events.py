@@ -2,11 +2,9 @@
 Update events: each step compares the clock with the next moment at which something is due.
 """
 
-from collections.abc import Mapping
-from fractions import Fraction
-
 from stepgen.plan.faults import Faults
 from stepgen.plan.isr import Motion
+from stepgen.plan.scale import Scale
 from stepgen.spec import Motor
 from stepgen.spec.motions.update_events import UpdateEvents
 
@@ -19,7 +17,7 @@ _TIMED_CALL_CYCLES = 30
 def plan(
     spec: UpdateEvents,
     motor: Motor,
-    _scale: Mapping[str, Fraction],
+    _scale: Scale,
     _f_cpu_hz: int,
     _faults: Faults,
 ) -> Motion:

@@ -262,6 +262,22 @@ def pin_change(lab: Lab) -> Iterator[str]:
             yield f"{runs} runs after 3 changes"
 
 
+@point("driven-input", "What drives an input is stronger than its pull-up", "14.2.3")
+def driven_input(lab: Lab) -> Iterator[str]:
+    """
+    PB0 shows the level at which it is held, also after its port was written.
+    """
+    levels = (True, False, True, False)
+    with lab.running("driven_input") as machine:
+        for mark, level in enumerate(levels, 1):
+            machine.run_until_mark(mark, limit_cycles=1000)
+            machine.drive_pin(PINB, 0, high=level)
+        machine.run_until_mark(len(levels) + 1, limit_cycles=1000)
+        seen = ram(machine, "seen", len(levels))
+        if seen != [1, 0, 1, 0]:
+            yield f"PB0 shows {seen}, on the chip [1, 0, 1, 0]"
+
+
 def _marks(machine: Machine) -> dict[int, int]:
     """
     Return the cycle of each mark that the program has written.

@@ -57,6 +57,7 @@ OF_KERNEL: Mapping[str, Sequence[str]] = {
     "ring": (),
     "pulse": ("pin-writes", "pin-writes-1280", "pin-writes-2560"),
 }
+OF_SWITCHES = ("driven-input",)
 OF_WATCHDOG = (
     *("watchdog-period", "watchdog-fed", "watchdog-sequence", "watchdog-reset"),
     *("watchdog-reset-32u4", "watchdog-reset-1280", "watchdog-reset-2560"),
@@ -75,6 +76,7 @@ def needed_points(plan: Plan) -> tuple[Point, ...]:
         names.update(
             OF_TIMING[motor.timing.form or motor.timing.kind], OF_KERNEL[motor.kernel.kind]
         )
+        names.update(OF_SWITCHES if motor.end_stops and motor.end_stops.switches else ())
     names.update(OF_WATCHDOG if plan.watchdog_ms is not None else ())
     return tuple(one for one in points() if one.name in names and one.mcu in {UNO_CHIP, chip})
 
@@ -88,6 +90,7 @@ def dependents(point: Point) -> tuple[str, ...]:
         found.append("every spec")
     found += [f"timing {kind}" for kind, names in OF_TIMING.items() if point.name in names]
     found += [f"kernel {kind}" for kind, names in OF_KERNEL.items() if point.name in names]
+    found += ["limit switches"] if point.name in OF_SWITCHES else []
     found += ["watchdog_ms"] if point.name in OF_WATCHDOG else []
     return tuple(found)
 

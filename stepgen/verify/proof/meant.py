@@ -17,6 +17,7 @@ _COUNTS = "counts of a timer, which wraps; no match is as much as half a round a
 _AHEAD = "which of two positions lies ahead: those are less than 2**31 apart, or count as backward"
 _LAPS = "0 laps stand for 256; without kLaps none is counted; that they make up the limit is proven"
 
+_METRES = re.compile(r"\b(\w+?)(Read|Current)Position\(\)\) \* \d+UL")
 _CHANNEL, _FLAGS = re.compile(r"\b(OC[FR])\d[ABC]\b"), re.compile(r"\bTIFR\d\b")
 
 MEANT = {
@@ -27,7 +28,7 @@ MEANT = {
     "return (static_cast<uint32_t>(motion.restHigh) << 16 | motion.rest) + motorCount;": _ENDLESS,
     "return motion.target + (motion.mode & kReverse ? left : -left);": _MODULO,
     "return static_cast<int32_t>(motorPosition());": _MODULO,
-    "return static_cast<int32_t>(static_cast<uint32_t>(motorReadPosition()) * 250UL);": _METRIC,
+    "return static_cast<int32_t>(static_cast<uint32_t>(motorPosition()) * 1UL);": _METRIC,
     "motorShow(motorPosition());": "a phase is the position modulo the phases, a power of two here",
     "motion.rest = steps - 1;": _ENDLESS,
     "const uint32_t rest = limit - 1;": _ENDLESS,
@@ -123,6 +124,7 @@ def for_motor(text: str, motors: tuple[str, ...]) -> str:
     """
     Return *text* of a library of *motors* as it were for one called ``motor``, on channel 1A.
     """
+    text = _METRES.sub(r"\1Position()) * 1UL", text)
     for motor in motors:
         for after in _NAMES:
             text = re.sub(rf"\b{motor}{after}\b", f"motor{after}", text)

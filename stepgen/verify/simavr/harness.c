@@ -198,7 +198,15 @@ int machine_drive_pin(machine *m, uint16_t pin_address, int bit, int level)
     for (unsigned i = 0; m->facts->ports[i]; i++) {
         if (m->facts->pin_address[i] != pin_address)
             continue;
-        uint32_t port = AVR_IOCTL_IOPORT_GETIRQ(m->facts->ports[i]);
+        /* simavr takes the level of an input that it is not told of from the pull-up, at each
+           write of the port. */
+        char letter = m->facts->ports[i];
+        avr_ioport_external_t *driven = &m->driven[i];
+        driven->name = (unsigned char)letter;
+        driven->mask |= 1 << bit;
+        driven->value = level ? driven->value | 1 << bit : driven->value & ~(1 << bit);
+        avr_ioctl(m->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(letter), driven);
+        uint32_t port = AVR_IOCTL_IOPORT_GETIRQ(letter);
         avr_raise_irq(avr_io_getirq(m->avr, port, bit), (uint32_t)level);
         return 1;
     }

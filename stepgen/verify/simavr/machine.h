@@ -3,6 +3,7 @@
 #ifndef STEPGEN_MACHINE_H
 #define STEPGEN_MACHINE_H
 
+#include <simavr/avr_ioport.h>
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
 #include <simavr/sim_io.h>
@@ -61,6 +62,7 @@ struct machine {
     slot slots[MAX_IOs];
     timer timers[MOST_TIMERS];
     uint8_t shown[12];       /* what each port was recorded to show last */
+    avr_ioport_external_t driven[12];  /* the inputs that are driven from outside, by port */
 
     avr_int_vector_t *vectors[MAX_VECTORS];  /* by priority */
     uint8_t vector_count;
