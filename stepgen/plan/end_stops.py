@@ -235,6 +235,7 @@ class _Homing:
             return min(position, highest)
         end = "highest" if self._spec.towards == "low" else "lowest"
         self._faults.at("position").report(
-            f"lies beyond the {end} position of the range, at whose other end the switch is"
+            f"lies beyond the {end} position of the range, at whose other end the switch is; give "
+            "the switch a position there"
         )
         return None

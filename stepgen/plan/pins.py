@@ -12,7 +12,7 @@ def missing_pin(name: str, board: Board) -> str:
     lists = f"`stepgen boards {board.name}` lists them"
     if name.upper() in board.analog_inputs:
         return (
-            f"{name} of the {board.title} is an analog input only, which cannot be switched; take "
+            f"{name} of the {board.title} is an analog input only, which is not HIGH or LOW; take "
             f"another pin, {lists}"
         )
     return f"the {board.title} has no pin {name[:20]}; {lists}"

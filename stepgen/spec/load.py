@@ -18,6 +18,8 @@ _ENTRY_REASONS = {"missing": "has too few entries; give one for each wire"}
 # Of a certain field:
 _FIELD_REASONS = {
     ("too_short", "pins"): "has too few entries; give one for each wire",
+    ("missing[]", "range"): "has too few entries; write the lowest and the highest position",
+    ("too_long", "range"): "has too many entries; write the lowest and the highest position",
     ("too_long", "pins"): "has too many entries; give one for each wire",
     (
         "too_short",
@@ -152,7 +154,9 @@ def _reason(details: ErrorDetails) -> str:
     field = names[-1] if names else "the spec"
     is_entry = names != list(details["loc"])
     message = details["msg"][:1].lower() + details["msg"][1:]
-    reason = _ENTRY_REASONS.get(kind) if is_entry else None
+    reason = None
+    if is_entry:
+        reason = _FIELD_REASONS.get((f"{kind}[]", field)) or _ENTRY_REASONS.get(kind)
     reason = reason or _FIELD_REASONS.get((kind, field)) or _REASONS.get(kind, "{field}: {message}")
     text = reason.format(field=field, message=message, **details.get("ctx", {}))
     return " ".join(text.split())  # a name may hold line ends, and a fault is one line

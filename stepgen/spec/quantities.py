@@ -14,6 +14,7 @@ Unit = Literal["steps", "mm", "deg", "turns"]
 
 _LENGTH_WORDS = re.compile(r"(?P<number>\S+) *(?P<unit>steps|mm|deg|turns)")
 _WORDS = re.compile(r"(?P<number>\S+) *(?P<unit>steps|mm|deg|turns)(?P<per>/s(\^[23])?)")
+_FARTHEST = (1 << 31) - 1
 _NO_PLACE = "is no number of steps; write one, or such as 50 mm, -90 deg or 1.5 turns"
 
 
@@ -60,7 +61,7 @@ def _place(value: Any) -> Quantity:  # noqa: ANN401 - whatever the YAML held
     size = number.removeprefix("-")
     is_zero = re.fullmatch(r"0+(\.0+)?", size)
     unit: Any = words["unit"]
-    return Quantity(Fraction(0) if is_zero else sign * as_ratio(size), unit)
+    return Quantity(Fraction(0) if is_zero else sign * as_ratio(size, _FARTHEST), unit)
 
 
 def _has_unit(value: float | str) -> bool:

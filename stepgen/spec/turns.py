@@ -18,9 +18,9 @@ _RATIO = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12}|/[0-9]{1,12})?")
 _NO_NUMBER = "is no number; write 64, 63.68395 or a fraction such as 25792/405"
 
 
-def as_ratio(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
+def as_ratio(value: Any, largest: int = _LARGEST) -> Fraction:  # noqa: ANN401 - whatever the YAML held
     """
-    Return *value* exactly as it was written.
+    Return *value* exactly as it was written, up to *largest*.
 
     Raises:
         ValueError: It is no number above 0, or none of a size that can be computed with.
@@ -34,8 +34,8 @@ def as_ratio(value: Any) -> Fraction:  # noqa: ANN401 - whatever the YAML held
         number = Fraction(value) if isinstance(value, str) else Fraction(Decimal(str(value)))
     except (ValueError, ArithmeticError):
         raise ValueError(_NO_NUMBER) from None
-    if not 0 < number <= _LARGEST or number.denominator > _LARGEST:
-        raise ValueError(f"is out of range; write one above 0 and at most {_LARGEST}")
+    if not 0 < number <= largest or number.denominator > _LARGEST:
+        raise ValueError(f"is out of range; write one above 0 and at most {largest}")
     return number
 
 

@@ -23,11 +23,19 @@ def axis_ways(plan: Plan, index: int, ladder: Ladder) -> Iterator[Way]:
     cruise_256 = motor.motion.cruise_interval_256
     inner = _inner_step(ladder)
 
-    def way(name: str, meets: int, steps: int | None = None, again: Call | None = None) -> Way:
+    def way(
+        name: str,
+        meets: int,
+        steps: int | None = None,
+        again: Call | None = None,
+        pace_256: int = cruise_256,
+    ) -> Way:
         call = Call(CallKind.RUN_FORWARD, index)
-        if steps is not None:
+        if pace_256 != cruise_256:
+            call = Call(CallKind.HOME, index)
+        elif steps is not None:
             call = Call(CallKind.MOVE, index, steps=steps)
-        gaps = tuple(_gaps(ladder, cruise_256, steps, meets + 1))
+        gaps = tuple(_gaps(ladder, pace_256, steps, meets + 1))
         settle = (gaps[-1] + gaps[-2]) // FRACTIONS
         return Way(name, call, meets, again, settle, gaps_256=gaps)
 
@@ -40,6 +48,10 @@ def axis_ways(plan: Plan, index: int, ladder: Ladder) -> Iterator[Way]:
     yield way("a step after a turn", inner, None, Call(CallKind.RUN_BACKWARD, index))
     if motor.releases_at_rest:
         yield way("the release after the last step", 3, 2)
+    stops = motor.end_stops
+    if stops and stops.homing:
+        travel, fast_256 = stops.homing.travel, stops.homing.fast.interval_256
+        yield way("a step on the way home", 3, travel, pace_256=fast_256)
     if motor.motion.queue:
         back = Call(CallKind.QUEUE_MOVE_TO, index, steps=-1)
         yield way("a step that begins the next leg", 2, 2, back)
@@ -81,6 +93,12 @@ def axis_commands(plan: Plan, index: int, ladder: Ladder) -> Iterator[Command]:
     if motor.switches_current:
         yield command("enable", call(CallKind.HOLD))
         yield command("disable", call(CallKind.RELEASE))
+    if motor.end_stops:
+        yield command("emergency stop", call(CallKind.EMERGENCY_STOP))
+        yield command("clear a fault", call(CallKind.CLEAR_FAULT))
+    if motor.end_stops and motor.end_stops.homing:
+        yield command("home", call(CallKind.HOME))
+        yield command("halt and home", call(CallKind.HALT), call(CallKind.HOME))
     if motor.motion.queue:
         yield command("one more", call(CallKind.QUEUE_MOVE_TO, 9))
 

@@ -161,8 +161,9 @@ class AtLimits(AxisSketch):
                 yield self.call(CallKind.MOVE_TO, steps)
                 yield self.call(CallKind.QUEUE_MOVE_TO, steps)
                 yield self.call(CallKind.SET_POSITION, steps)
-                yield self.call(CallKind.MOVE, steps)
                 yield self.call(CallKind.MOVE, max(min(steps - start, FURTHEST), -FURTHEST - 1))
+            for steps in (-FURTHEST - 1, FURTHEST):
+                yield self.call(CallKind.MOVE, steps)
             yield self.read
         for run, name in _WAYS.items():
             end = self.lowest if name == "low" else self.highest
@@ -200,14 +201,19 @@ class Homing:
         sketch = self.sketch
         for steps in (3 * self.behind + 20, self.behind // 2 + 3, 1, 0):
             yield from sketch.anew()
-            yield sketch.pace(3 * sketch.cruise_256)
+            slow_256 = 4 * self.facts.fast_256
+            yield sketch.pace(slow_256)
             yield from self._to_contact(steps)
             yield from self._back()
             yield from self._again()
             yield sketch.read
-            yield sketch.call(CallKind.MOVE, 5)
-            yield Wait(sketch.clocks(5))
+            yield sketch.call(CallKind.MOVE, self.behind)
+            yield Wait(sketch.clocks(self.behind, slow_256))
             yield sketch.read
+        yield sketch.call(CallKind.EMERGENCY_STOP)
+        yield sketch.read
+        yield sketch.call(CallKind.CLEAR_FAULT)
+        yield sketch.read
 
     def not_found(self) -> Iterator[Action]:
         """

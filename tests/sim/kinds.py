@@ -28,4 +28,5 @@ KINDS = (
     "mega_compare_three",
     "uno_slow",
     "uno_trapezoid",
+    "uno_homing",
 )

@@ -2,15 +2,13 @@
 Verification can fail: each planted bug of the templates is caught, by the check that is for it.
 """
 
-import shutil
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from stepgen.devices import Mcu
-from stepgen.library.render import template_dir
 from stepgen.plan import ladder_isr
 from stepgen.plan.instructions import Gate, Instruction, Storage
 from stepgen.plan.isr import Motion
@@ -27,48 +25,13 @@ from stepgen.verify.scenarios import Scenario, standard_scenarios
 from stepgen.verify.toolchain import default_compiler
 from stepgen.verify.verification import scenarios_of, verify_spec
 from tests.sim.hazard_trials import batches, sample
+from tests.sim.mutant import Mutant
 from tests.sim.shrinking import Library
 
 # Not `stepgen verify`, but commands at random clocks near an interrupt: test_hazards.py.
 HAZARDS = "hazards"
 HAZARD_SEED = 20_260_601
 SPECS = Path(__file__).parents[2] / "specs"
-
-
-@dataclass(frozen=True)
-class Mutant:
-    """
-    A bug: one text of one template replaced by another, the spec that shows it, and what must.
-
-    Args:
-        name: What is wrong.
-        template: The file under ``templates/``.
-        old: What stands there.
-        new: What is planted instead.
-        check: The check of `stepgen verify` that must catch it, or HAZARDS.
-        finding: What that check must say among other things.
-        spec: The spec whose library has the bug.
-    """
-
-    name: str
-    template: str
-    old: str
-    new: str
-    check: str
-    finding: str
-    spec: str = "uno_motor_shield"
-
-    def plant(self, folder: Path) -> Path:
-        """
-        Return a copy of the templates in *folder*, with the bug.
-        """
-        templates = folder / "templates"
-        shutil.copytree(template_dir(), templates)
-        file = templates / self.template
-        text = file.read_text(encoding="utf-8")
-        assert text.count(self.old) == 1, self.name
-        file.write_text(text.replace(self.old, self.new), encoding="utf-8")
-        return templates
 
 
 MUTANTS = (
@@ -723,8 +686,8 @@ AXIS_MUTANTS = (
     Mutant(
         "a queue that a halt leaves",
         "motions/trapezoid.j2",
-        "Halt() {\n  const Masked masked;\n%% if axis.queue\n  {{ motor.name }}Queued = 0;\n",
-        "Halt() {\n  const Masked masked;\n%% if axis.queue\n",
+        "%% if axis.queue\n  {{ motor.name }}Queued = 0;\n%% endif\n  auto &motion",
+        "  auto &motion",
         check="slide: a queue that is full",
         finding="slide: ",
         spec="uno_trapezoid",
