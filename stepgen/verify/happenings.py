@@ -222,8 +222,9 @@ def _rows_of_call(answer: Answer, trace: Trace, facts: MotorFacts) -> Iterator[R
     """
     kind, begin, end = answer.call.kind, answer.begin_cycle, answer.end_cycle
     if kind is CallKind.PRESS:
+        there = facts.end_stops.switches if facts.end_stops else frozenset()
         bits = answer.call.control
-        pressed = frozenset(end for end, bit in SWITCH_BITS.items() if bits & bit)
+        pressed = frozenset(end for end in there if bits & SWITCH_BITS[end])
         yield begin, Order.PRESS, Told(Switches(begin, pressed))
         return
     found = (trace.commit(begin, end, which) for which in range(masked_sections(kind, facts)))

@@ -163,6 +163,8 @@ def axis(draw: st.DrawFn, free: list[str]) -> Data:
     if per_mm := draw(st.sampled_from([None, 1, 80, 400])):
         units["steps_per_mm"] = per_mm
         motion["cruise_speed"] = f"{cruise}/{per_mm} mm/s"
+    if draw(st.booleans()):
+        units["limits"] = draw(limits(free, cruise))
     return {
         **units,
         "drive": drive,
@@ -171,6 +173,36 @@ def axis(draw: st.DrawFn, free: list[str]) -> Data:
         "at_rest": draw(st.sampled_from(["hold"] if always_on else ["hold", "release"])),
         "port": draw(st.sampled_from(["owned", "shared"])),
     }
+
+
+@st.composite
+def limits(draw: st.DrawFn, free: list[str], cruise: int) -> Data:
+    """
+    Draw what an axis of up to *cruise* steps/s keeps to, with switches on pins of *free*.
+    """
+    ends = draw(st.lists(st.sampled_from(["low", "high"]), max_size=2, unique=True))
+    found: Data = {}
+    for end in ends:
+        (pin,) = draw(pins_of(free, 1))
+        active = st.sampled_from(["low", "high"])
+        found[end] = draw(
+            st.sampled_from(
+                [pin, {"pin": pin, "active": draw(active), "pull_up": draw(st.booleans())}]
+            )
+        )
+    if not ends or draw(st.booleans()):
+        found["range"] = [draw(st.integers(-2_000, 0)), draw(st.integers(1, 2_000))]
+    if ends and draw(st.booleans()):
+        speed = draw(st.integers(50, cruise))
+        found["homing"] = {
+            "towards": ends[0],
+            "speed": speed,
+            "slow_speed": draw(st.integers(20, max(20, min(speed, 400)))),
+            "back_off": draw(st.integers(1, 40)),
+            "travel": draw(st.integers(41, 2_000)),
+            "position": draw(st.integers(-2_000, 0) if ends[0] == "low" else st.integers(1, 2_000)),
+        }
+    return found
 
 
 sequences = st.sampled_from(["full", "wave", "half"])

@@ -80,6 +80,21 @@ QUICK = (
             "the step interrupt by itself",
         ),
     ),
+    Quick(
+        "uno_homing",
+        (
+            "slideInit",
+            "slideHalt",
+            "slideStop",
+            "slideSetCurrentPosition",
+            "slideEmergencyStop",
+            "slideReadFault",
+            "slideClearFault",
+            "slideIsHomed",
+            "__vector_slide_limit",
+            "the step interrupt by itself",
+        ),
+    ),
 )
 
 
@@ -169,6 +184,22 @@ MUTANTS = (
         "motion.end = {{ motor.name }}Position();",
         "uno_trapezoid",
         "slideHalt",
+    ),
+    Mutant(
+        "a switch that takes a step from what is left of the way",
+        "macros/guard.j2",
+        "  ++{{ motor.count }};\n",
+        "",
+        "uno_homing",
+        "__vector_slide_limit",
+    ),
+    Mutant(
+        "an emergency stop after which homing goes on",
+        "motions/trapezoid.j2",
+        "StopAtOnce() {\n{{- limits.ends_homing(motor) | more(2) }}\n",
+        "StopAtOnce() {\n",
+        "uno_homing",
+        "slideEmergencyStop",
     ),
 )
 

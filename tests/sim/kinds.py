@@ -29,4 +29,5 @@ KINDS = (
     "uno_slow",
     "uno_trapezoid",
     "uno_homing",
+    "mega_ramps_limits",
 )

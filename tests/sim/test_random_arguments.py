@@ -60,6 +60,10 @@ KINDS_OF_AXIS_CALL = {
     CallKind.RELEASE: 4,
     CallKind.READ: 5,
     CallKind.INIT: 3,
+    CallKind.HOME: 9,
+    CallKind.EMERGENCY_STOP: 4,
+    CallKind.CLEAR_FAULT: 25,
+    CallKind.PRESS: 20,
 }
 WATCHED = "uno_watchdog"
 WATCHDOG_CALLS = 25  # beside those of the motor
@@ -129,6 +133,8 @@ class Arguments:
         draw = self._random
         weights = {kind: n for kind, n in KINDS_OF_AXIS_CALL.items() if has_call(motor, kind)}
         kind = draw.choices(list(weights), list(weights.values()))[0]
+        if kind is CallKind.PRESS:
+            return Call(kind, index, draw.choice([0, 0, 1, 2, 3]))
         context = draw.choice(self._contexts(changes=False))
         cruise = motor.motion.cruise_interval_256
         paces = (0, cruise - 1, cruise, cruise + 1, LARGEST_32, self._long(), 3 * cruise)

@@ -14,12 +14,14 @@ from stepgen.verify.proof.axis_state import (
     ENDLESS,
     REVERSE,
     RUNNING,
+    TOUCHED,
     TURNING,
     AxisState,
 )
 from stepgen.verify.proof.numbers import BITS, wide
 
-TOO_FAST, RUNS, QUEUE_FULL = -1, -5, -6
+TOO_FAST, RUNS, QUEUE_FULL, RANGE = -1, -5, -6, -7
+LIMIT, EMERGENCY = 1, 3
 _FAR = 1 << 30
 
 Said = Iterator[tuple[str, Any]]
@@ -142,6 +144,65 @@ def halt(way: AxisWay) -> Said:
     yield "where it is to be", way.after.target == way.before.position
 
 
+def emergency_stop(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...EmergencyStop``.
+    """
+    yield from _ceases(way, EMERGENCY)
+
+
+def _ceases(way: AxisWay, fault: int) -> Said:
+    after = way.after
+    yield from halt(way)
+    yield "moves are refused from now on", after.limit("Fault") == fault
+    if after.limit("Homing") is not None:
+        yield "homing is over", after.limit("Homing") == 0
+        yield "and its place forgotten", after.limit("Homed") == 0
+
+
+def limit(way: AxisWay) -> Said:
+    """
+    Yield what must hold where the step interrupt goes on in place of a step into a switch.
+    """
+    before, homing = way.before, way.before.limit("Homing")
+    if homing is None:
+        yield from _ceases(way, LIMIT)
+        return
+    looks, after = homing & 1 != 0, way.after
+    for says, claim in _ceases(way, LIMIT):
+        yield says, z3.Or(looks, claim)
+    for says, claim in stop(way):
+        yield f"looking for it, {says}", z3.Implies(looks, claim)
+    yield "no step is made", after.position == before.position
+    seen = z3.And(after.limit("Contact") == before.position, after.is_in(TOUCHED))
+    yield "the place is kept", z3.Implies(looks, seen)
+    yield "homing goes on", z3.Implies(looks, after.limit("Homing") == homing)
+
+
+def clear_fault(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...ClearFault``.
+    """
+    yield "there is no fault", way.after.limit("Fault") == 0
+    yield "nothing else changes", _same(way)
+
+
+def read_fault(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...ReadFault``.
+    """
+    yield "the fault", way.result == way.before.limit("Fault")
+    yield "nothing changes", _same(way)
+
+
+def is_homed(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...IsHomed``.
+    """
+    yield "whether it is at home", (way.result != 0) == (way.before.limit("Homed") != 0)
+    yield "nothing changes", _same(way)
+
+
 def set_speed(way: AxisWay) -> Said:
     """
     Yield what must hold after ``...SetSpeed``.
@@ -261,7 +322,7 @@ def set_current_position(way: AxisWay) -> Said:
     """
     yield from _only_at_rest(way)
     named = z3.And(way.after.position == way.arguments[0], way.after.target == way.arguments[0])
-    yield "the place has that number", z3.Or(way.before.is_in(RUNNING), named)
+    yield "the place has that number", z3.Or(way.result != 0, named)
 
 
 def outputs(way: AxisWay) -> Said:
@@ -274,8 +335,11 @@ def outputs(way: AxisWay) -> Said:
 
 def _only_at_rest(way: AxisWay) -> Said:
     running = way.before.is_in(RUNNING)
-    yield "it refuses while it runs", way.result == z3.If(running, _code(RUNS), _code(0))
-    yield "then nothing changes", z3.Implies(running, _same(way))
+    fine = way.result == 0
+    if way.before.limit("Fault") is not None:
+        fine = z3.Or(fine, way.result == _code(RANGE))  # where that begins, the scenarios show
+    yield "it refuses while it runs", z3.If(running, way.result == _code(RUNS), fine)
+    yield "then nothing changes", z3.Implies(way.result != 0, _same(way))
 
 
 def passed(way: AxisWay) -> Said:
@@ -343,6 +407,11 @@ AXIS_CLAIMS: dict[str, Callable[[AxisWay], Said]] = {
     "EnableOutputs": outputs,
     "DisableOutputs": outputs,
     "Passed": passed,
+    "EmergencyStop": emergency_stop,
+    "ClearFault": clear_fault,
+    "ReadFault": read_fault,
+    "IsHomed": is_homed,
+    "limit": limit,
     "boundary": boundary,
 }
 """The claims by function, without the axis's name."""

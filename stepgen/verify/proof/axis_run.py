@@ -34,8 +34,12 @@ _ROW_BYTES = 4
 _MOVES = {
     *("MoveTo", "Move", "QueueMoveTo", "RunForward", "RunBackward", "Stop", "SetSpeed"),
     "boundary",
+    "limit",
 }
 """What changes a way while the axis is on it: too much for z3 unless each mode has its ways."""
+
+_HANDLERS = {"boundary", "limit"}
+"""Where the step interrupt goes on."""
 
 _CUTS = {"SetSpeed"}
 """Of those what changes the present level by itself: each length of one has its ways, too."""
@@ -49,7 +53,7 @@ def axis_entries(library: Library, motor: str) -> list[str]:
     Return the functions by which a sketch or an interrupt gets at the axis *motor*, and its parts.
     """
     names = [
-        f"{_VECTOR}{motor}_{name}" if name == "boundary" else motor + name for name in AXIS_CLAIMS
+        f"{_VECTOR}{motor}_{name}" if name in _HANDLERS else motor + name for name in AXIS_CLAIMS
     ]
     found = (name for name in (*names, *PARTS, *_OTHERS) if name in library.functions)
     return [*found, _BY_ITSELF]
@@ -142,6 +146,8 @@ class AxisRun:
             self.paths.assume(self._ramp.is_level(z3.BitVecVal(height, 16)))
         if kind == "boundary":
             before = self._interrupted(before)
+        if kind == "limit":
+            before = self._before_step(before)
         if kind == "Init":
             self._from_reset(before)
         else:
@@ -169,6 +175,16 @@ class AxisRun:
         for place, value in split.items():
             memory.write(place, value)
         return replace(before, values={**before.values, **split})
+
+    def _before_step(self, entered: AxisState) -> AxisState:
+        """
+        Return what was before the step interrupt that has met a switch, and *entered* its handler.
+
+        It has counted the step, and done nothing else.
+        """
+        before = entered.counting(entered.count + 1)
+        self.paths.assume(z3.And(before.is_in(RUNNING), before.of("lapsLeft") == 0))
+        return before
 
     def _interrupted(self, entered: AxisState) -> AxisState:
         """

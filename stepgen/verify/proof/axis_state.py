@@ -14,8 +14,8 @@ from stepgen.verify.proof.ramp import LAPPED_256, Ramp
 from stepgen.verify.proof.source import Source
 from stepgen.verify.proof.state import Claims
 
-COAST, ENDLESS, REVERSE, RUNNING, CLIMB, DESCEND, TURNING = (1 << bit for bit in range(1, 8))
-"""The bits of ``mode``: kCoast and so on."""
+TOUCHED, COAST, ENDLESS, REVERSE, RUNNING, CLIMB, DESCEND, TURNING = (1 << bit for bit in range(8))
+"""The bits of ``mode``: kTouched and so on."""
 
 FAR = 1 << 30
 """Steps ahead of an axis that runs without an end: kFar."""
@@ -153,6 +153,12 @@ class AxisState:
             value = z3.If(at == place, self.values[f"{self.motor}Queue", str(place)], value)
         return value
 
+    def limit(self, name: str) -> Any:  # noqa: ANN401
+        """
+        Return what the variable *name* of its limits holds; None if it has none of that name.
+        """
+        return self.values.get((self.motor + name,))
+
     @property
     def target(self) -> Any:  # noqa: ANN401
         """
@@ -202,7 +208,7 @@ def invariant(state: AxisState) -> Claims:
         ),
     }
     whole = {says: z3.Implies(running, claim) for says, claim in of_way(state).items()}
-    return claims | whole | _of_queue(state)
+    return claims | whole | _of_queue(state) | _of_homing(state)
 
 
 def many_are_left(state: AxisState) -> Any:  # noqa: ANN401 - z3 has no types
@@ -284,6 +290,19 @@ def _of_queue(state: AxisState) -> Claims:
         claims[f"destination {number} is not that before it"] = z3.Implies(there, one != before)
         before = one
     return claims
+
+
+def _of_homing(state: AxisState) -> Claims:
+    homing, goal = state.limit("Homing"), state.limit("Goal")
+    if homing is None:
+        return {}
+    homes = homing != 0
+    on_a_way = z3.And(state.is_in(RUNNING), z3.Not(state.is_in(ENDLESS)), state.queued == 0)
+    return {
+        "the speed that homing keeps is a level": state.ramp.is_level(goal),
+        "homing is on a way with an end, and nothing waits": z3.Implies(homes, on_a_way),
+        "homing has four ways": z3.ULE(homing, 4),
+    }
 
 
 def _steps(levels: Any, length: Any) -> Any:  # noqa: ANN401

@@ -43,6 +43,7 @@ _NAMES = {
     "__uint24": U24,
     "uint32_t": U32,
     "long unsigned int": U32,
+    "unsigned long": U32,
     "int32_t": I32,
     "long int": I32,
     "signed long": I32,

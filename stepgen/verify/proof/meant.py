@@ -15,9 +15,11 @@ _METRIC = "it wraps where the header says; that it is the position up to there i
 _PARTS = "the parts make up the whole, which is proven of the interval or of what is left"
 _COUNTS = "counts of a timer, which wraps; no match is as much as half a round ahead: proven"
 _AHEAD = "which of two positions lies ahead: those are less than 2**31 apart, or count as backward"
+_ENDS = "one comparison, modulo 2**32, for both ends of a range; scenarios ask for both and more"
 _LAPS = "0 laps stand for 256; without kLaps none is counted; that they make up the limit is proven"
 
 _METRES = re.compile(r"\b(\w+?)(Read|Current)Position\(\)\) \* \d+UL")
+_COUNTER = re.compile(r"\bTCNT\d\b")
 _CHANNEL, _FLAGS = re.compile(r"\b(OC[FR])\d[ABC]\b"), re.compile(r"\bTIFR\d\b")
 
 MEANT = {
@@ -99,6 +101,12 @@ MEANT = {
     "motion.dueFraction = fraction;": "its upper bit is in the next line",
     "const uint16_t due = motion.due + ticks + (fraction >> 8);": _COUNTS,
     "motion.due += kLapTicks;": _COUNTS,
+    "OCR1A = TCNT1 + kSoonTicks;": _COUNTS,
+    "if (position < kMotorLowest || position > kMotorHighest) return MOTOR_ERROR_RANGE;": _ENDS,
+    "if (destination < kMotorLowest || destination > kMotorHighest) return MOTOR_ERROR_RANGE;": (
+        _ENDS
+    ),
+    "if (target < kMotorLowest || target > kMotorHighest) return MOTOR_ERROR_RANGE;": _ENDS,
 }
 
 
@@ -126,6 +134,9 @@ def for_motor(text: str, motors: tuple[str, ...]) -> str:
     """
     text = _METRES.sub(r"\1Position()) * 1UL", text)
     for motor in motors:
+        title = motor[0].upper() + motor[1:]
+        text = re.sub(rf"\bk{title}(Lowest|Highest)\b", r"kMotor\1", text)
         for after in _NAMES:
             text = re.sub(rf"\b{motor}{after}\b", f"motor{after}", text)
-    return _FLAGS.sub("TIFR1", _CHANNEL.sub(r"\g<1>1A", text))
+    text = _COUNTER.sub("TCNT1", _CHANNEL.sub(r"\g<1>1A", text))
+    return _FLAGS.sub("TIFR1", text)
