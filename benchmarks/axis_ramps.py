@@ -14,7 +14,7 @@ from pathlib import Path
 
 from stepgen import api
 from stepgen.library.render import render_library
-from stepgen.plan.model import Plan
+from stepgen.plan.model import MotorPlan, Plan
 from stepgen.verify.bench import watched_registers
 from stepgen.verify.simavr import Machine
 from stepgen.verify.toolchain import Build, Target, build, default_compiler, empty_sketch
@@ -37,6 +37,14 @@ PEERS = (
 RAMP_STEPS = 2_480
 _CRUISE_STEPS = 4_000
 _PINS = (("D2", "D5"), ("D3", "D6"), ("D4", "D7"))
+_EVERYTHING = " with a queue, an S-curve, switches and homing"
+_MORE = ", queue: 8, jerk: 100000"
+_LIMITS = """    limits:
+      low: D9
+      high: D10
+      range: [-10, 2000000]
+      homing: {speed: 3000, slow_speed: 100, back_off: 100, travel: 20000}
+"""
 _SETTLE_CYCLES = 20_000
 _SKETCH = """
 #include <Arduino.h>
@@ -71,13 +79,18 @@ def rows(_rounds: int) -> Iterator[tuple[str, ...]]:
     """
     Yield a row for one and two axes on a Uno and for three on a Mega, then the peers'.
     """
-    for board, count, timer in (("uno", 1, 1), ("uno", 2, 1), ("mega", 3, 5)):
-        plan = bench_plan(board, count, timer)
+    for board, count, timer, everything in (
+        ("uno", 1, 1, False),
+        ("uno", 2, 1, False),
+        ("mega", 3, 5, False),
+        ("uno", 1, 1, True),
+    ):
+        plan = bench_plan(board, count, timer, everything=everything)
         made = build_program(plan)
         seen = measure(plan, made.elf)
         empty = empty_sketch(Target.from_fqbn(plan.board.fqbn), default_compiler())
         yield (
-            f"{count} on a {plan.board.title}",
+            f"{count} on a {plan.board.title}{_EVERYTHING if everything else ''}",
             f"{seen.cruise_cycles:.1f}",
             f"{seen.ramp_cycles:.1f}",
             f"{seen.late_steps}",
@@ -86,15 +99,16 @@ def rows(_rounds: int) -> Iterator[tuple[str, ...]]:
     yield from PEERS
 
 
-def bench_plan(board: str, count: int, timer: int) -> Plan:
+def bench_plan(board: str, count: int, timer: int, *, everything: bool = False) -> Plan:
     """
-    Return the plan of *count* axes on the channels of *timer* of *board*.
+    Return the plan of *count* axes on the channels of *timer* of *board*, with all there is or not.
     """
+    more, limits = (_MORE, _LIMITS) if everything else ("", "")
     folder = Path(tempfile.mkdtemp(prefix="stepgen-benchmark-"))
     motors = "".join(
         f"  m{index}:\n    drive: {{kind: step-dir, step: {step}, dir: {direction}, "
         f"driver: a4988}}\n    timing: {{kind: compare, timer: {timer}}}\n    at_rest: hold\n"
-        "    motion: {kind: trapezoid, cruise_speed: 10000, acceleration: 20000}\n"
+        f"    motion: {{kind: trapezoid, cruise_speed: 10000, acceleration: 20000{more}}}\n{limits}"
         for index, (step, direction) in enumerate(_PINS[:count])
     )
     path = folder / "bench.yaml"
@@ -110,7 +124,7 @@ def build_program(plan: Plan) -> Build:
     calls = {
         "init": "\n  ".join(f"{name}Init();" for name in names),
         "start": "\n  ".join(f"{name}MoveTo(1000000);" for name in names),
-        "stop": "\n    ".join(f"{name}Stop(); GPIOR1 = {name}CurrentPosition();" for name in names),
+        "stop": "\n    ".join(_calls(motor) for motor in plan.motors),
     }
     folder = Path(tempfile.mkdtemp(prefix="stepgen-benchmark-"))
     for path, text in render_library(plan, "").items():
@@ -122,6 +136,15 @@ def build_program(plan: Plan) -> Build:
     sources = [file, *sorted((folder / "src").glob("*.cpp"))]
     target = Target.from_fqbn(plan.board.fqbn)
     return build(sources, [folder / "src"], target, default_compiler(), folder / "out")
+
+
+def _calls(motor: MotorPlan) -> str:
+    """
+    Return the calls of *motor* that the sketch has, but does not come to.
+    """
+    name = motor.name
+    calls = f"{name}Stop(); GPIOR1 = {name}CurrentPosition();"
+    return f"{calls} {name}Home(); {name}QueueMoveTo(5);" if motor.end_stops else calls
 
 
 def measure(plan: Plan, elf: Path) -> Seen:

@@ -11,7 +11,7 @@ as it lies below at its ends, so that the errors of a row cancel out over its ti
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil
 
@@ -26,7 +26,7 @@ MOST_ROWS = 255
 LONGEST_INTERVAL_CYCLES = (1 << 24) - 1
 """The longest interval: 24 bits before the point."""
 
-_SLOW_CYCLES = 32_768  # from here on an interval is divided into laps
+_SLOW = 32_768 * FRACTION  # from here on an interval is divided into laps
 SLOPE_BYTES = (0, 1, 2)
 """By how many bytes the 16 bits of a row's slope in flash are shifted."""
 
@@ -85,13 +85,6 @@ class Ladder:
         """
         return sum(row.levels * row.steps for row in self.rows)
 
-    def is_slow(self, number: int) -> bool:
-        """
-        Tell whether row *number* has intervals that are divided into laps.
-        """
-        below = sum(row.levels * row.slope_256 for row in self.rows[:number])
-        return self.first_interval_256 - below >= _SLOW_CYCLES * FRACTION
-
     def goal(self, interval_256: int) -> int:
         """
         Return the steps that lead to the last level whose interval is *interval_256* or longer.
@@ -123,7 +116,7 @@ def _level_steps(curve: Curve, r: int) -> int:
     Return how many steps a level has that begins at step *r*.
     """
     longest = curve.bases[r] // _LEVELS_PER_RAMP
-    if curve.intervals[r] >= _SLOW_CYCLES * FRACTION or not longest:
+    if curve.intervals[r] >= _SLOW or not longest:
         return 1
     return 1 << min(longest.bit_length() - 1, _LONGEST_LEVEL_SHIFT)
 
@@ -148,11 +141,22 @@ def _levels_left(curve: Curve, r: int, steps: int) -> int:
 def _rows(curve: Curve, target: int) -> Iterator[Row]:
     interval, r = curve.intervals[0], 0
     while interval > target and (curve.steps is None or r < curve.steps):
-        steps = _level_steps(curve, r)
-        row = _longest_row(curve, r, steps, interval)
+        # The line lies beside the curve, and what counts for laps is the line.
+        steps = 1 if interval >= _SLOW else _level_steps(curve, r)
+        row = _all_slow_or_none(_longest_row(curve, r, steps, interval), interval)
         yield row
         interval -= row.levels * row.slope_256
         r += row.levels * steps
+
+
+def _all_slow_or_none(row: Row, interval: int) -> Row:
+    """
+    Return *row*, which begins with *interval*, without the levels behind the slow ones, if any are.
+    """
+    last = interval - (row.levels - 1) * row.slope_256
+    if interval < _SLOW or last >= _SLOW:
+        return row
+    return replace(row, levels=(interval - _SLOW) // row.slope_256 + 1)
 
 
 def _longest_row(curve: Curve, r: int, steps: int, interval: int) -> Row:
@@ -180,8 +184,7 @@ def _fits(curve: Curve, r: int, steps: int, levels: int) -> bool:
     Tell whether a row of so many *levels* is straight enough, and all of it slow or all of it not.
     """
     end = r + levels * steps
-    slow = _SLOW_CYCLES * FRACTION
-    if curve.intervals[r] >= slow > curve.intervals[end - 1]:
+    if curve.intervals[r] >= _SLOW > curve.intervals[end - 1]:
         return False
     if _level_steps(curve, end - 1) != steps:
         return False

@@ -25,6 +25,18 @@ def test_a_step_takes_so_many_cycles(board: str, axes: int, cruise: int, ramp: i
     assert seen.late_steps == 0
 
 
+def test_all_that_an_axis_can_have_fits_a_small_chip() -> None:
+    """
+    With a queue of 8, an S-curve, two switches, a range and homing, all of them used.
+    """
+    plan = bench_plan("uno", 1, 1, everything=True)
+    made = build(plan)
+    empty = empty_sketch(Target.from_fqbn(plan.board.fqbn), default_compiler())
+
+    assert made.flash_bytes - empty.flash_bytes <= 3_720
+    assert made.ram_bytes - empty.ram_bytes <= 90
+
+
 def test_a_further_axis_takes_little_memory() -> None:
     """
     What is the same for each axis exists once: with move, stop and position over an empty sketch.

@@ -38,7 +38,8 @@ SCENARIOS = ("single steps both ways", "stop while running", "refused calls", "h
 
 OF_AXES = (": short moves both ways", ": endless runs", ": a queue that is full",
            ": targets that change in flight", ": speeds that change in flight",
-           ": outputs on and off")  # fmt: skip
+           ": outputs on and off", ": emergency stops", ": switches that are run into",
+           ": moves beyond the range", ": homing")  # fmt: skip
 
 
 def prove(path: Path) -> None:

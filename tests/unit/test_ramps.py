@@ -7,6 +7,8 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from stepgen import api
 from stepgen.plan.curves import Speeds
@@ -135,3 +137,30 @@ def test_an_s_takes_its_mean_speed_times_its_length() -> None:
     numbers = [Fraction(number) for number in (0, 10_000, 20_000, 100_000)]
 
     assert Speeds(*numbers).steps == Wish(16_000_000, *numbers).steps == 3_500
+
+
+@given(
+    f_cpu_hz=st.sampled_from([8_000_000, 16_000_000]),
+    start=st.integers(0, 500),
+    rise=st.integers(50, 5_000),
+    acceleration=st.integers(20, 4_000),
+    jerk=st.none() | st.integers(500, 50_000),
+)
+def test_no_row_comes_to_laps_or_leaves_them(
+    f_cpu_hz: int, start: int, rise: int, acceleration: int, jerk: int | None
+) -> None:
+    """
+    An interval of 32768 clocks or more has laps, which begin and end with rows of their own steps.
+    """
+    bend = None if jerk is None else Fraction(jerk)
+    speeds = Speeds(Fraction(start), Fraction(start + rise), Fraction(acceleration), bend)
+    ladder = plan_ladder(f_cpu_hz, speeds)
+    assume(ladder is not None)
+    assert ladder is not None
+    interval = ladder.first_interval_256
+    for row in ladder.rows:
+        last = interval - (row.levels - 1) * row.slope_256
+        slow = 32_768 * 256
+        assert (interval >= slow) == (last >= slow), row
+        assert row.steps == 1 or interval < slow, row
+        interval -= row.levels * row.slope_256
