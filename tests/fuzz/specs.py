@@ -184,12 +184,11 @@ def limits(draw: st.DrawFn, free: list[str], cruise: int) -> Data:
     found: Data = {}
     for end in ends:
         (pin,) = draw(pins_of(free, 1))
-        active = st.sampled_from(["low", "high"])
-        found[end] = draw(
-            st.sampled_from(
-                [pin, {"pin": pin, "active": draw(active), "pull_up": draw(st.booleans())}]
-            )
-        )
+        if draw(st.booleans()):
+            found[end] = pin
+            continue
+        active: str = draw(st.sampled_from(["low", "high"]))
+        found[end] = {"pin": pin, "active": active, "pull_up": draw(st.booleans())}
     if not ends or draw(st.booleans()):
         found["range"] = [draw(st.integers(-2_000, 0)), draw(st.integers(1, 2_000))]
     if ends and draw(st.booleans()):
