@@ -189,9 +189,11 @@ def limits(draw: st.DrawFn, free: list[str], cruise: int) -> Data:
             continue
         active: str = draw(st.sampled_from(["low", "high"]))
         found[end] = {"pin": pin, "active": active, "pull_up": draw(st.booleans())}
-    if not ends or draw(st.booleans()):
+    has_range: bool = draw(st.booleans())
+    if has_range or not ends:
         found["range"] = [draw(st.integers(-2_000, 0)), draw(st.integers(1, 2_000))]
-    if ends and draw(st.booleans()):
+    homes: bool = draw(st.booleans())
+    if ends and homes:
         speed = draw(st.integers(50, cruise))
         found["homing"] = {
             "towards": ends[0],
