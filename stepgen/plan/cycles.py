@@ -18,9 +18,12 @@ class HandlerCycles:
         masked: How much longer a call has interrupts off than with a write to one port.
         to_clock: Until it starts the clock of a timer that it sets anew.
         to_clock_thinking: The same when it looked at the clock and made the step itself.
+        turning: How much longer an axis takes that turns round there, since its driver has to see
+            DIR for a while before and after.
     """
 
     longest: int
     masked: int
     to_clock: int
     to_clock_thinking: int
+    turning: int = 0

@@ -213,6 +213,7 @@ class MotorPlan:
             self.hot_path.boundary_entry_cycles
             + self.kernel.handler.longest
             + self.motion.handler_cycles
+            + (self.kernel.handler.turning if self.motion.ladder else 0)
             + self.gate.handler_cycles
             - (0 if self.timing.is_set_anew else self.motion.setting_cycles)
         )

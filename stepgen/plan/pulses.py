@@ -201,6 +201,7 @@ class Pulse:
             masked=14 + hold + self.setup_wait_cycles,
             to_clock=75,
             to_clock_thinking=94 + pulse,
+            turning=self.hold_wait_cycles + self.setup_wait_cycles,
         )
 
 
