@@ -22,6 +22,7 @@ STEMS = (
     "uno_drv8825",
     "uno_cnc_shield",
     "uno_28byj48_ramp",
+    "uno_homing",
 )
 BESIDE_ALL = """
 library: BesideAll
