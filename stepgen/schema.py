@@ -10,6 +10,7 @@ from pydantic.json_schema import GenerateJsonSchema
 from stepgen.devices import SKETCH_LIBRARIES, boards
 from stepgen.spec import Spec
 from stepgen.spec.model import SHORT_FORMS
+from stepgen.spec.quantities import Quantity
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -46,11 +47,11 @@ def _allow_short_forms(parts: dict[str, Any]) -> None:
 
 class _Schema(GenerateJsonSchema):
     """
-    Writes a default that is a fraction as users do: as text.
+    Writes a default that is a fraction or a quantity as users do: as text.
     """
 
     def encode_default(self, dft: Any) -> Any:  # noqa: ANN401 - any default
-        return super().encode_default(str(dft) if isinstance(dft, Fraction) else dft)
+        return super().encode_default(str(dft) if isinstance(dft, Fraction | Quantity) else dft)
 
 
 def _untitled(node: Any) -> Any:  # noqa: ANN401 - any JSON

@@ -15,6 +15,7 @@ from stepgen.commands.dump import plain
 from stepgen.commands.plan_rates import show_rates
 from stepgen.commands.report import print_tables, say
 from stepgen.plan.kernels import Drive
+from stepgen.plan.limit_facts import limit_facts
 from stepgen.plan.model import MotorPlan, Plan
 
 EXAMPLE = (
@@ -78,7 +79,7 @@ def _show_spec(spec: Path, *, as_json: bool) -> None:
         say(json.dumps(plain(decided), indent=2, ensure_ascii=False))
         return
     motors = [
-        (f"Motor {motor.name}", (), (*_motor_rows(motor), *_rate_rows(decided, motor)))
+        (f"Motor {motor.name}", (), (*_motor_rows(decided, motor), *_rate_rows(decided, motor)))
         for motor in decided.motors
     ]
     tables = [("Library", (), _library_rows(decided)), *motors]
@@ -132,7 +133,7 @@ def _period(cycles: int, clock_hz: int) -> str:
     return f"{cycles} cycles = {microseconds:.10g} us: {clock_hz / cycles:.6g} steps/s"
 
 
-def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
+def _motor_rows(decided: Plan, motor: MotorPlan) -> Iterable[Row]:
     path = motor.hot_path
     yield ("drive", f"{motor.drive.title}, {motor.drive.steps_text}")
     yield ("wires", "\n".join(_wires(motor.drive)))
@@ -147,6 +148,7 @@ def _motor_rows(motor: MotorPlan) -> Iterable[Row]:
     yield ("at rest", "coils off" if motor.releases_at_rest else "coils hold")
     timeout = motor.command_timeout_ms
     yield ("command time-out", "none" if timeout is None else f"{timeout} ms")
+    yield from limit_facts(motor, decided.board.f_cpu_hz)
     yield ("step interrupt", f"{path.usual_cycles} cycles, response to RETI")
     if path.lap_cycles:
         yield (

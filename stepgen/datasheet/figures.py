@@ -11,6 +11,7 @@ from stepgen.library.rates_view import microseconds
 from stepgen.library.text import listed
 from stepgen.plan.curves import FRACTION
 from stepgen.plan.ladder import LONGEST_INTERVAL_CYCLES
+from stepgen.plan.limit_facts import range_steps
 from stepgen.plan.model import MotorPlan, Plan, RateLimit
 from stepgen.plan.rates import Clock
 from stepgen.plan.timings import plan_setting
@@ -38,40 +39,6 @@ class Table:
     caption: str
     heading: Row
     rows: tuple[Row, ...]
-
-
-def wire_table(motor: MotorPlan) -> Table:
-    """
-    Return signal, pin, port bit and role of each wire of *motor*.
-    """
-    drive = motor.drive
-    shared = ", shared" if drive.shared_enables else ""
-    roles = dict.fromkeys(drive.wires, "steps")
-    roles |= dict.fromkeys(drive.enables, f"enable{shared}")
-    roles |= dict.fromkeys(drive.quiet, "stays LOW")
-    rows = tuple(
-        (wire.signal, wire.pin.label, wire.pin.bit.name, roles.get(wire, "direction"))
-        for wire in drive.every_wire
-    )
-    return Table(f"{motor.name}: wires", ("signal", "pin", "port bit", "what for"), rows)
-
-
-def ownership_table(plan: Plan) -> Table:
-    """
-    Return what each motor has for itself: timer, vector and ports.
-    """
-    rows = [
-        (
-            motor.name,
-            f"{motor.timing.timer.number} ({motor.timing.kind}, {motor.timing.event})",
-            motor.timing.vector,
-            ", ".join(sorted({wire.pin.bit.port for wire in motor.drive.every_wire})),
-            f"{motor.port_letters} owned" if motor.owns_ports else "none owned, all shared",
-        )
-        for motor in plan.motors
-    ]
-    heading = ("motor", "timer", "interrupt vector", "ports written", "ports for itself")
-    return Table("Timers, vectors and ports", heading, tuple(rows))
 
 
 def rate_tables(plan: Plan) -> Iterator[Table]:
@@ -288,6 +255,8 @@ def facts(plan: Plan) -> Iterator[tuple[str, str]]:
         safest = plan.rates[motor.name][-1]
         yield (f"{motor.name}, up to", f"{int(safest.steps_per_second)} steps/s")
         yield (f"{motor.name}, a step takes", f"{motor.hot_path.usual_cycles} clocks")
+        if motor.end_stops and motor.end_stops.range:
+            yield (f"{motor.name}, range", range_steps(motor.end_stops.range))
     fastest = plan.held_off[-1]
     yield (
         f"interrupts off at {int(fastest.steps_per_second)} steps/s",

@@ -14,6 +14,7 @@ from stepgen.datasheet import figures
 from stepgen.datasheet.chart import Chart, motion_charts
 from stepgen.datasheet.figures import Table
 from stepgen.datasheet.scene import Scene
+from stepgen.datasheet.wire_tables import limit_tables, ownership_table, wire_table
 from stepgen.datasheet.wiring import wiring_scene
 from stepgen.library.prose import takes
 from stepgen.library.rates_view import lateness
@@ -103,8 +104,8 @@ def page_view(plan: Plan, spec_text: str, report: "Report | None") -> PageView:
         outcome_css="open" if report is None else "good" if report.passed else "bad",
         facts=tuple(figures.facts(plan)),
         wiring=wiring_scene(plan),
-        wires=tuple(figures.wire_table(motor) for motor in plan.motors),
-        ownership=figures.ownership_table(plan),
+        wires=(*map(wire_table, plan.motors), *limit_tables(plan)),
+        ownership=ownership_table(plan),
         beside=_beside(plan),
         rates=tuple(figures.rate_tables(plan)),
         charts=tuple(motion_charts(plan)),

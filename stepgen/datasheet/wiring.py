@@ -6,21 +6,20 @@ front of the drivers, and from there to its input. Inputs are in the order in wh
 arrive, so that those of one side of the board never cross.
 """
 
-from dataclasses import dataclass, field
-
+from stepgen.datasheet.blocks import Block, Lead, blocks_of
 from stepgen.datasheet.drivers import (
     MOTOR_WIDTH,
     ROW,
     TITLE_HEIGHT,
     WIDTH,
-    block_height,
     draw_driver,
     driver_of,
     input_y,
 )
 from stepgen.datasheet.scene import Scene, at
-from stepgen.devices.outlines import GROUND, PITCH_MIL, Outline, Place, outline_of
-from stepgen.plan.model import MotorPlan, Plan
+from stepgen.datasheet.switches import draw_switches
+from stepgen.devices.outlines import PITCH_MIL, Outline, Place, outline_of
+from stepgen.plan.model import Plan
 
 _LARGEST_BOARD = (400, 260)
 _LARGEST_SCALE = 0.2  # units per mil
@@ -28,37 +27,6 @@ _LEFT = 38  # room for connectors
 _LANE, _COLUMN = 7, 8
 _NAME_ROOM = 34  # in front of a driver, for the pins' names
 _GAP = 10
-_SIDES = ("up", "right", "down")
-_COLORS = 6
-
-
-@dataclass
-class _Wire:
-    """
-    One wire; its lane, column and ends are found one after the other.
-    """
-
-    motor: MotorPlan
-    signal: str
-    place: Place
-    title: str
-    css: str
-    x: float = 0
-    y: float = 0
-    lane: float = 0
-    column: int = 0
-    end: float = 0
-
-
-@dataclass
-class _Block:
-    """
-    A motor with its driver, and the wires that arrive there.
-    """
-
-    motor: MotorPlan
-    wires: list[_Wire] = field(default_factory=list)
-    top: float = 0
 
 
 def wiring_scene(plan: Plan) -> Scene:
@@ -70,7 +38,7 @@ def wiring_scene(plan: Plan) -> Scene:
     """
     outline = outline_of(plan.board)
     scale = _scale(outline)
-    blocks = _blocks(plan, outline)
+    blocks = blocks_of(plan, outline)
     wires = [wire for block in blocks for wire in block.wires]
     width, height = outline.width * scale, outline.height * scale
     ups = _lanes(blocks, "up")
@@ -83,7 +51,7 @@ def wiring_scene(plan: Plan) -> Scene:
         wire.lane = bottom + _GAP + (len(downs) - 1 - index) * _LANE
     for wire in wires:
         wire.x, wire.y = _LEFT + wire.place.x * scale, top + wire.place.y * scale
-    columns = _columns(ups, downs, [wire for wire in wires if _side(wire) == "right"], scale)
+    columns = _columns(ups, downs, [wire for wire in wires if wire.side == "right"], scale)
     driver_x = _LEFT + width + _GAP + columns * _COLUMN + _NAME_ROOM
     scene = Scene(
         title=f"Wiring on the {plan.board.title}",
@@ -99,10 +67,18 @@ def wiring_scene(plan: Plan) -> Scene:
         scene.dot(wire.x, wire.y, 3, f"pin {wire.css}", wire.title)
         scene.write(driver_x - 4, wire.end - 2.5, wire.place.label, "pin-name end")
     for block in blocks:
-        looks = driver_of(block.motor)
-        names = [looks.inputs.get(wire.signal, wire.signal) for wire in block.wires]
-        draw_driver(scene, block.motor, driver_x, block.top, names)
+        _draw_block(scene, block, driver_x)
     return scene
+
+
+def _draw_block(scene: Scene, block: Block, x: float) -> None:
+    signals = [wire.signal for wire in block.wires]
+    if block.has_switches:
+        draw_switches(scene, block.motor, x, block.top, signals)
+    else:
+        inputs = driver_of(block.motor).inputs
+        names = [inputs.get(signal, signal) for signal in signals]
+        draw_driver(scene, block.motor, x, block.top, names)
 
 
 def _scale(outline: Outline) -> float:
@@ -110,49 +86,7 @@ def _scale(outline: Outline) -> float:
     return min(_LARGEST_SCALE, widest / outline.width, highest / outline.height)
 
 
-def _side(wire: _Wire) -> str:
-    return wire.place.header.side
-
-
-def _blocks(plan: Plan, outline: Outline) -> list[_Block]:
-    """
-    Return the motors, those whose wires leave upwards first, with their wires in order of arrival.
-    """
-    places = {place.label: place for place in outline.places()}
-    grounds = [place for place in outline.places() if place.label == GROUND]
-    blocks = []
-    for motor in plan.motors:
-        plugged = driver_of(motor).is_plugged
-        found = [
-            _Wire(
-                motor,
-                wire.signal,
-                places[wire.pin.label],
-                f"motor {motor.name}, {wire.signal}: {wire.pin.label} ({wire.pin.bit.name})",
-                f"wire w{index % _COLORS + 1}{' plugged' if plugged else ''}",
-            )
-            for index, wire in enumerate(motor.drive.every_wire)
-        ]
-        if not plugged:
-            place = max(grounds, key=lambda place: place.x)
-            found.append(
-                _Wire(motor, GROUND, place, f"motor {motor.name}, ground: GND", "wire ground")
-            )
-        found.sort(key=_arrival)
-        blocks.append(_Block(motor, found))
-    return sorted(blocks, key=lambda block: _mean_side(block.wires))
-
-
-def _arrival(wire: _Wire) -> tuple[int, int]:
-    order = {"up": wire.place.x, "right": wire.place.y, "down": -wire.place.x}
-    return _SIDES.index(_side(wire)), order[_side(wire)]
-
-
-def _mean_side(wires: list[_Wire]) -> float:
-    return sum(_SIDES.index(_side(wire)) for wire in wires) / len(wires)
-
-
-def _lanes(blocks: list[_Block], side: str) -> list[_Wire]:
+def _lanes(blocks: list[Block], side: str) -> list[Lead]:
     """
     Return the wires of *side*, the one whose lane is farthest from the board first.
     """
@@ -161,31 +95,31 @@ def _lanes(blocks: list[_Block], side: str) -> list[_Wire]:
         wire
         for block in ordered
         for wire in (block.wires if side == "up" else reversed(block.wires))
-        if _side(wire) == side
+        if wire.side == side
     ]
 
 
-def _stack(blocks: list[_Block], top: float, height: float) -> float:
+def _stack(blocks: list[Block], top: float, height: float) -> float:
     """
     Place the drivers one below the other, beside the board; return where the lower of both ends.
     """
-    needed = sum(block_height(len(block.wires)) for block in blocks)
+    needed = sum(block.height for block in blocks)
     y = top - TITLE_HEIGHT + max(0.0, (height + TITLE_HEIGHT - needed) / 2)
     for block in blocks:
         block.top = y
         for index, wire in enumerate(block.wires):
             wire.end = input_y(y, index)
-        y += block_height(len(block.wires))
+        y += block.height
     return max(top + height, y - ROW)
 
 
-def _columns(ups: list[_Wire], downs: list[_Wire], rights: list[_Wire], scale: float) -> int:
+def _columns(ups: list[Lead], downs: list[Lead], rights: list[Lead], scale: float) -> int:
     """
     Give each wire a column, counted from the drivers, in which no other wire is at its height.
     """
     taken: list[list[tuple[float, float]]] = []
 
-    def place(wire: _Wire, first: int) -> int:
+    def place(wire: Lead, first: int) -> int:
         start = wire.lane or _leaving_y(wire, scale)
         low, high = sorted((start, wire.end))
         column = first
@@ -207,18 +141,18 @@ def _columns(ups: list[_Wire], downs: list[_Wire], rights: list[_Wire], scale: f
     return len(taken)
 
 
-def _leaving_y(wire: _Wire, scale: float) -> float:
+def _leaving_y(wire: Lead, scale: float) -> float:
     inner = wire.place.header.is_inner
     return wire.y + (PITCH_MIL * scale / 2 if inner else 0)
 
 
-def _path(wire: _Wire, driver_x: float, scale: float) -> str:
+def _path(wire: Lead, driver_x: float, scale: float) -> str:
     """
     Return the way of *wire*; from an inner row it goes between two pins of the outer one.
     """
     column = driver_x - _NAME_ROOM - wire.column * _COLUMN
     start = f"M{at(wire.x)} {at(wire.y)}"
-    if _side(wire) == "right":
+    if wire.side == "right":
         off = f"V{at(_leaving_y(wire, scale))}"
     else:
         aside = PITCH_MIL * scale / 2 if wire.place.header.is_inner else 0

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from textwrap import fill
 
 from stepgen.library.api_view import api_name, api_names, init_name
+from stepgen.library.console_extras import Extra, Meaning, extras, faults, refusals
 from stepgen.library.example_speeds import Ramp, example_speed_sps
 from stepgen.library.motor_view import period_type
 from stepgen.library.text import comment_lines, listed
 from stepgen.plan.model import MotorPlan, Plan
 
 _WIDTH = 92
-_WORD_WIDTH = 13  # of a command with its number, in the help
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,6 @@ class _Kind:
     table: str
     placeholder: str
     functions: tuple[str, ...]
-    switches: tuple[tuple[str, str], ...]
 
 
 _KINDS = {
@@ -38,42 +37,14 @@ _KINDS = {
             *("MoveTo", "Move", "SetSpeed", "RunForward", "RunBackward", "Stop", "Halt"),
             *("SetCurrentPosition", "CurrentPosition", "IsRunning"),
         ),
-        (("on", "EnableOutputs"), ("off", "DisableOutputs")),
     ),
     "motor": _Kind(
         "Motor",
         "motors",
         "MOTOR",
         ("SetSpeed", "ReadStatus", "ReadPosition"),
-        (("hold", "Hold"), ("release", "Release")),
     ),
 }
-_SWITCH_TEXTS = ("coils on, while it stands", "coils off, while it stands")
-
-
-@dataclass(frozen=True)
-class Extra:
-    """
-    A command that not every motor has: *optional* tells whether some motor of the console lacks it.
-    """
-
-    word: str
-    says: str
-    optional: bool
-
-    @property
-    def padded(self) -> str:
-        """
-        Return the word as wide as those before it in the help.
-        """
-        return self.word.ljust(_WORD_WIDTH)
-
-    @property
-    def remark(self) -> str:
-        """
-        Return the comment of its place in the table.
-        """
-        return "  // null where there is none" if self.optional else ""
 
 
 @dataclass(frozen=True)
@@ -100,6 +71,8 @@ class ConsoleKind:
     table: str
     who: str
     off_text: str
+    run_text: str
+    faults: tuple[Meaning, ...]
     extras: tuple[Extra, ...]
     changing: tuple[str, ...]
     ramps: tuple[Ramp, ...]
@@ -119,7 +92,7 @@ class ConsoleView:
     addressee: str
     who: tuple[str, ...]
     places: tuple[str, ...]
-    refuses_running: bool
+    refusals: tuple[Meaning, ...]
 
 
 def console_view(plan: Plan, ramps: Sequence[Ramp], baud: int) -> ConsoleView:
@@ -141,7 +114,7 @@ def console_view(plan: Plan, ramps: Sequence[Ramp], baud: int) -> ConsoleView:
         addressee="several" if names[1:] else "one",
         who=tuple(f"{kind.who}is {row.name}" for kind in kinds for row in kind.rows),
         places=tuple(places[name] for name in names),
-        refuses_running=any(m.switches_current or m.motion.ladder for m in plan.motors),
+        refusals=refusals(plan),
     )
 
 
@@ -149,37 +122,28 @@ def _kind(plan: Plan, api: str, ramps: Sequence[Ramp]) -> ConsoleKind:
     kind = _KINDS[api]
     motors = [motor for motor in plan.motors if api_name(motor) == api]
     ramped = [ramp for ramp in ramps if ramp.motor in {motor.name for motor in motors}]
-    switching = [motor.name for motor in motors if motor.switches_current]
-    extras = [
-        (word, says, {name: f"{name}{function}" for name in switching})
-        for (word, function), says in zip(kind.switches, _SWITCH_TEXTS, strict=True)
-    ]
-    for ramp in ramped[:1]:  # all have the same speeds
-        says = f"from {ramp.slow_sps} to {ramp.fast_sps} steps/s by update events"
-        extras.append(("ramp", says, {ramp.motor: f"{ramp.motor}Ramp" for ramp in ramped}))
-    extras = [extra for extra in extras if extra[2]]
+    more = extras(motors, ramped)
+    has_range = any(motor.end_stops and motor.end_stops.range for motor in motors)
     return ConsoleKind(
         api=api,
         type=kind.type,
         table=kind.table,
         who=f"{kind.placeholder} " if plan.motors[1:] else "",
-        off_text=", coils off" if switching else "",
-        extras=tuple(
-            Extra(word, says, optional=len(having) < len(motors)) for word, says, having in extras
-        ),
+        off_text=", coils off" if any(motor.switches_current for motor in motors) else "",
+        run_text="as far as it may" if has_range else "without an end",
+        faults=faults(plan),
+        extras=more,
         changing=tuple(motor.name for motor in motors if motor.motion.changes_speed),
         ramps=tuple(ramped),
-        rows=tuple(
-            _row(motor, kind, [having.get(motor.name, "nullptr") for *_, having in extras])
-            for motor in motors
-        ),
+        rows=tuple(_row(motor, kind, more) for motor in motors),
         speed_sps=example_speed_sps(plan),
         period_type=period_type(plan),
     )
 
 
-def _row(motor: MotorPlan, kind: _Kind, extras: Sequence[str]) -> ConsoleRow:
+def _row(motor: MotorPlan, kind: _Kind, more: Sequence[Extra]) -> ConsoleRow:
     names = [f"{motor.name}{function}" for function in kind.functions]
     if motor.motion.changes_speed:  # whose function has more parameters
         names[0] = f"{motor.name}Start"
-    return ConsoleRow(motor.name, init_name(motor), fill(", ".join([*names, *extras]), _WIDTH))
+    names += [extra.functions.get(motor.name, "nullptr") for extra in more]
+    return ConsoleRow(motor.name, init_name(motor), fill(", ".join(names), _WIDTH))

@@ -6,8 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from stepgen.library.api_view import position_name
+from stepgen.library.console_extras import Meaning, faults
 from stepgen.library.console_view import ConsoleView, console_view
 from stepgen.library.example_speeds import Ramp, example_ramp, example_speed_sps
+from stepgen.library.example_trips import Trip, example_trip
 from stepgen.library.neighbours import (
     Neighbour,
     neighbour_names,
@@ -63,6 +65,7 @@ class ExamplesView:
     """
 
     sketches: tuple[Example, ...]
+    how_long: str
     absent: tuple[str, ...]
     baud: int
     waits_for_port: bool
@@ -72,6 +75,9 @@ class ExamplesView:
     ramps: tuple[Ramp, ...]
     ramped_names: str
     coils: tuple[Coils, ...]
+    trips: tuple[Trip, ...]
+    home_comment: tuple[str, ...]
+    faults: tuple[Meaning, ...]
     neighbours: tuple[Neighbour, ...]
     together_comment: tuple[str, ...]
     guarded: tuple[str, ...]
@@ -82,25 +88,31 @@ def examples_view(plan: Plan) -> ExamplesView:
     """
     Return the examples that suit *plan*.
 
-    Console and WiringTest speak through Serial: where its pins have another owner they are absent.
+    Those that speak through Serial are absent where its pins have another owner.
     """
     names = listed([motor.name for motor in plan.motors])
     changing = [motor for motor in plan.motors if motor.motion.changes_speed]
     ramps = tuple(ramp for ramp in (example_ramp(motor, plan) for motor in changing) if ramp)
+    trips = tuple(trip for trip in map(example_trip, plan.motors) if trip)
     coils = tuple(_coils(motor) for motor in plan.motors if _has_order(motor))
     beside, left_out = neighbours(plan, example_speed_sps(plan))
     beside_names = neighbour_names(beside)
     owner = serial_owner(plan)
     ways = _ways(plan)
-    typed = (_console(names, _baud(plan)), *([_wiring_test(coils)] if coils else []))
+    typed = (
+        _console(names, _baud(plan)),
+        *([_home(trips)] if trips else []),
+        *([_wiring_test(coils)] if coils else []),
+    )
     return ExamplesView(
         sketches=(
-            Example("Smallest", f"{names} from the start, for ever: where to begin"),
+            Example("Smallest", f"{names} from the start, {_how_long(plan)}: where to begin"),
             Example("Turn", f"{names} to and fro, {ways} each way"),
             *(() if owner else typed),
             *([_ramp_example(ramps)] if ramps else []),
             *([_together(names, beside_names)] if beside else []),
         ),
+        how_long=_how_long(plan),
         absent=tuple(
             f"There is no {example.name}, which needs Serial: {owner}."
             for example in typed
@@ -115,6 +127,12 @@ def examples_view(plan: Plan) -> ExamplesView:
         ramps=ramps,
         ramped_names=listed([ramp.motor for ramp in ramps]) if ramps else "",
         coils=coils,
+        trips=trips,
+        home_comment=comment_lines(
+            f"Looks for home first, and then moves {_named(trips)} to and fro. Open the Serial "
+            f"Monitor at {_baud(plan)} baud: the sketch says that it is there, or what went wrong."
+        ),
+        faults=faults(plan),
         neighbours=beside,
         guarded=_guarded(plan),
         kept_alive=_kept_alive(plan),
@@ -150,6 +168,15 @@ def _kept_alive(plan: Plan) -> tuple[str, ...]:
     )
 
 
+def _how_long(plan: Plan) -> str:
+    """
+    Return how long the motors turn in Smallest: one with a range goes to its end.
+    """
+    ranged = {bool(motor.end_stops and motor.end_stops.range) for motor in plan.motors}
+    ways = {False: "for ever", True: "to the end of its range"}
+    return " or ".join(ways[one] for one in sorted(ranged))
+
+
 def _ways(plan: Plan) -> str:
     """
     Return how far the motors go in Turn.
@@ -168,6 +195,14 @@ def _baud(plan: Plan) -> int:
 def _console(names: str, baud: int) -> Example:
     shows = f"{names} by hand: type `help` into the Serial Monitor, {baud} baud"
     return Example("Console", shows)
+
+
+def _home(trips: tuple[Trip, ...]) -> Example:
+    return Example("Home", f"{_named(trips)} home by the limit switch, then to and fro")
+
+
+def _named(trips: tuple[Trip, ...]) -> str:
+    return listed([trip.motor for trip in trips]) if trips else ""
 
 
 def _wiring_test(coils: tuple[Coils, ...]) -> Example:

@@ -2,6 +2,7 @@
 The view of one motor: names, masks and numbers as finished text.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from stepgen.library.api_view import dump_name, init_name, position_name, tells_missed
@@ -173,9 +174,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         late=instruction_lines(motor.hot_path.late),
         rare=instruction_lines(motor.hot_path.boundary),
         operands=operand_lines(motor),
-        wires=tuple(
-            Named(wire.signal, wire.pin.label, wire.pin.bit.name) for wire in drive.every_wire
-        ),
+        wires=tuple(_wires(motor)),
         example_speed_sps=example_speed_sps(plan),
         turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",
         turn_text="One turn" if motor.steps_per_turn else "200 steps",
@@ -202,6 +201,16 @@ def module_name(kind: str) -> str:
     Return the name of the partial for *kind*, as the spec calls it.
     """
     return kind.replace("-", "_")
+
+
+def _wires(motor: MotorPlan) -> Iterator[Named]:
+    """
+    Yield signal, pin and port bit of each wire of *motor*, those of its switches last.
+    """
+    for wire in motor.drive.every_wire:
+        yield Named(wire.signal, wire.pin.label, wire.pin.bit.name)
+    for switch in motor.end_switches:
+        yield Named(switch.signal, switch.pin.label, switch.pin.bit.name)
 
 
 def _turns(motor: MotorPlan) -> Turns | None:

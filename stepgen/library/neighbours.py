@@ -90,11 +90,11 @@ def serial_owner(plan: Plan) -> str:
     """
     Return who has a pin of Serial, such as ``motor pan has D1``; empty if both are free.
     """
-    wires = ((f"motor {m.name}", w.pin) for m in plan.motors for w in m.drive.every_wire)
+    pins = ((f"motor {motor.name}", pin) for motor in plan.motors for pin in motor.pins)
     others = (
         (use.name, pin) for use in spec_uses(plan) if use.name != "Serial" for pin in use.pins
     )
-    for owner, pin in (*wires, *others):
+    for owner, pin in (*pins, *others):
         if SERIAL_PINS & set(pin.uses):
             return f"{owner} has {pin.label}"
     return ""
@@ -122,7 +122,7 @@ def _free_pins(plan: Plan) -> Iterator[Pin]:
     (PCINT0 to PCINT7). Ports that belong to a motor are left alone.
     """
     owned = {w.pin.bit.port for m in plan.motors if m.owns_ports for w in m.drive.wires}
-    taken = {wire.pin.bit for motor in plan.motors for wire in motor.drive.every_wire}
+    taken = {pin.bit for motor in plan.motors for pin in motor.pins}
     taken |= {pin.bit for use in spec_uses(plan) for pin in use.pins}
     free = [p for p in _plain(plan.board) if p.bit not in taken and p.bit.port not in owned]
     yield from sorted(free, key=lambda pin: (pin.bit.port != "B", pin.number))

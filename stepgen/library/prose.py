@@ -46,8 +46,8 @@ def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
         for wire in motor.drive.every_wire
     ]
     rows += [
-        f"  {_signal(switch):<10}{switch.pin.label:<6}{switch.pin.bit.name:<6}{_level(switch)}"
-        for switch in _switches(motor)
+        f"  {switch.signal:<10}{switch.pin.label:<6}{switch.pin.bit.name:<6}{switch_role(switch)}"
+        for switch in motor.end_switches
     ]
     timer = motor.timing.timer
     taken = f"Timer {timer.number} belongs to the motor: no analogWrite() on {_pwm(motor, board)}."
@@ -60,20 +60,12 @@ def wiring(motor: MotorPlan, board: Board) -> tuple[str, ...]:
     )
 
 
-def _switches(motor: MotorPlan) -> Sequence[EndSwitch]:
-    return motor.end_stops.switches if motor.end_stops else ()
-
-
-def _signal(switch: EndSwitch) -> str:
-    return f"{switch.end} end"
-
-
-def _level(switch: EndSwitch) -> str:
+def switch_role(switch: EndSwitch) -> str:
     """
     Return what the pin of *switch* shows at the end of the way, and how it is held else.
     """
     pulled = ", pulled up by the chip" if switch.pull_up else ""
-    return f"{'HIGH' if switch.active_high else 'LOW'} there{pulled}"
+    return f"{switch.level} there{pulled}"
 
 
 def port_rule(motor: MotorPlan, board: Board) -> str:
@@ -176,7 +168,7 @@ def init_comment(motor: MotorPlan) -> tuple[str, ...]:
         if isinstance(motor.drive, PulseDrive) and motor.drive.enables
         else ""
     )
-    inputs = ", and those of the switches inputs" if _switches(motor) else ""
+    inputs = ", and those of the switches inputs" if motor.end_switches else ""
     return comment_lines(
         f"Makes the pins outputs{coils}, at position 0{inputs}. Call it once, from setup(). Until "
         f"then, and from any reset on, they are inputs and drive nothing{floats}."
@@ -304,8 +296,19 @@ def takes(plan: Plan) -> tuple[str, ...]:
     rows.extend(f"{listed(names)}: {rule}" for rule, names in under.items() if names[1:])
     rows.extend(sharing_rules(plan))
     rows.extend(_port_rules(plan))
+    rows.extend(_inputs(motor) for motor in plan.motors if motor.end_switches)
     rows.append("`GPIOR0`, `GPIOR1` and `GPIOR2`, which the Arduino core does not use.")
     return tuple(dict.fromkeys(filter(None, rows)))
+
+
+def _inputs(motor: MotorPlan) -> str:
+    """
+    Return which pins the switches of *motor* take.
+    """
+    switches = motor.end_switches
+    pins = listed([f"{switch.pin.label} ({switch.signal})" for switch in switches])
+    plural = ("s", "es", "inputs") if switches[1:] else ("", "", "an input")
+    return f"Pin{plural[0]} {pins}: {plural[2]} for the limit switch{plural[1]} of {motor.name}."
 
 
 def _rules(plan: Plan) -> Iterator[str]:

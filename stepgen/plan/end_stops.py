@@ -42,6 +42,20 @@ class EndSwitch:
     active_high: bool
     pull_up: bool
 
+    @property
+    def signal(self) -> str:
+        """
+        Return what its wire is called in tables.
+        """
+        return f"{self.end} end"
+
+    @property
+    def level(self) -> str:
+        """
+        Return what the pin shows at the end of the way.
+        """
+        return "HIGH" if self.active_high else "LOW"
+
 
 @dataclass(frozen=True)
 class Pace:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 
-from stepgen.devices import Board, Timer
-from stepgen.plan.end_stops import EndStops
+from stepgen.devices import Board, Pin, Timer
+from stepgen.plan.end_stops import EndStops, EndSwitch
 from stepgen.plan.instructions import Gate, Storage
 from stepgen.plan.isr import HotPath, Motion
 from stepgen.plan.kernels import Drive, Kernel
@@ -244,6 +244,21 @@ class MotorPlan:
         Return whether its coils can be switched off.
         """
         return bool(self.drive.released)
+
+    @property
+    def end_switches(self) -> tuple[EndSwitch, ...]:
+        """
+        Return the switches that it looks at before each step.
+        """
+        return self.end_stops.switches if self.end_stops else ()
+
+    @property
+    def pins(self) -> tuple[Pin, ...]:
+        """
+        Return every pin that it has, those of its switches last.
+        """
+        wires = (wire.pin for wire in self.drive.every_wire)
+        return (*wires, *(switch.pin for switch in self.end_switches))
 
     @property
     def wake_cycles(self) -> int:

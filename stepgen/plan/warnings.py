@@ -143,7 +143,7 @@ def _pwm_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
     if ANALOG_WRITE in _named(plan):
         return
     timer = motor.timing.timer
-    taken = {wire.pin.bit for each in plan.motors for wire in each.drive.every_wire}
+    taken = {pin.bit for each in plan.motors for pin in each.pins}
     free = {channel: bit for channel, bit in timer.outputs if bit not in taken}
     pins = [pin for pin in plan.board.pins if pin.bit in free.values()]
     if pins:
@@ -161,7 +161,7 @@ def _pin_reasons(motor: MotorPlan, plan: Plan) -> Iterable[str]:
 
     None of them is named: with a library in `uses` a shared pin is an error.
     """
-    pins = [wire.pin for wire in motor.drive.every_wire]
+    pins = motor.pins
     for library in _libraries(plan):
         shared = [pin for pin in pins if pin.bit in library.pins]
         if shared:

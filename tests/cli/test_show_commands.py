@@ -16,6 +16,7 @@ import pytest
 from stepgen import __version__
 from stepgen.devices import boards
 
+SPECS = Path(__file__).parents[2] / "specs"
 Stepgen = Callable[..., Any]
 
 GEARED = """
@@ -138,6 +139,23 @@ def test_a_plan_shows_the_numbers(stepgen: Stepgen, pan: Path) -> None:
     assert "TIMER1_OVF_vect" in run.out
     # 65535 ticks * 1024 at 16 MHz: 67107840 / 16 us.
     assert "67107840 cycles = 4194240 us" in run.out
+    assert "homing" not in run.out
+
+
+def test_a_plan_shows_the_limits(stepgen: Stepgen) -> None:
+    """
+    Switches, range and homing as the spec has them, at 80 steps in a millimetre.
+    """
+    run = stepgen("plan", str(SPECS / "uno_homing.yaml"))
+    rows = dict(
+        re.split(r" {2,}", line, maxsplit=1) for line in run.out.splitlines() if "  " in line
+    )
+
+    assert rows["low end"].strip() == "D9 (PB1), LOW when pressed, pulled up by the chip"
+    assert rows["high end"].strip() == "D10 (PB2), HIGH when pressed, pulled up by the chip"
+    assert rows["range"].strip() == "0 to 14400 steps: 0 to 180 mm"
+    assert rows["homing"].startswith("to the low switch at 2400 steps/s, for 17600 steps at most;")
+    assert rows["home"].strip() == "the switch is position -80; rest at 0"
 
 
 def test_a_plan_as_json_is_stable(stepgen: Stepgen, tmp_path: Path) -> None:

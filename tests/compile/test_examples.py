@@ -22,6 +22,7 @@ STEMS = (
     "uno_drv8825",
     "uno_cnc_shield",
     "uno_28byj48_ramp",
+    "uno_homing",
 )
 BESIDE_ALL = """
 library: BesideAll
@@ -39,6 +40,28 @@ motors:
     drive: motor-shield
     timing: {kind: compare, timer: 1}
     motion: {kind: trapezoid, cruise_speed: 400, acceleration: 400}
+"""
+# Of its axes one homes, one has a switch, one neither; a motor of constant speed is beside them.
+WITH_AND_WITHOUT_LIMITS = """
+library: WithAndWithout
+board: mega
+watchdog_ms: 500
+motors:
+  x:
+    drive: {kind: step-dir, driver: a4988, socket: ramps-1.4 X}
+    timing: {kind: compare, timer: 1, channel: A}
+    motion: {kind: trapezoid, cruise_speed: 4000, acceleration: 20000}
+    limits: {low: D3, homing: {speed: 1000, slow_speed: 100, back_off: 200, travel: 20000}}
+  y:
+    drive: {kind: step-dir, driver: a4988, socket: ramps-1.4 Y}
+    timing: {kind: compare, timer: 1, channel: B}
+    motion: {kind: trapezoid, cruise_speed: 4000, acceleration: 20000}
+    limits: {high: {pin: D15, active: high}}
+  z:
+    drive: {kind: step-dir, driver: a4988, socket: ramps-1.4 Z}
+    timing: {kind: compare, timer: 3, channel: A}
+    motion: {kind: trapezoid, cruise_speed: 1000, acceleration: 2000}
+  feed: {drive: {kind: four-wire, pins: [D40, D42, D44, D59]}, timer: 4}
 """
 
 
@@ -67,6 +90,20 @@ def test_a_sketch_with_every_other_library_compiles(
     spec.write_text(text, encoding="utf-8")
 
     assert build_example(spec, "Together", compiler).is_file()
+
+
+@pytest.mark.parametrize("compiler", COMPILERS, ids=lambda compiler: compiler.name)
+def test_examples_of_motors_with_and_without_limits_compile(
+    compiler: Compiler, tmp_path: Path
+) -> None:
+    """
+    Console has words that not every motor knows, and Home is for those alone that find home.
+    """
+    spec = tmp_path / "spec.yaml"
+    spec.write_text(WITH_AND_WITHOUT_LIMITS, encoding="utf-8")
+
+    for name in ("Console", "Home"):
+        assert build_example(spec, name, compiler).is_file()
 
 
 @pytest.mark.campaign

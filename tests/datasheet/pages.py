@@ -10,7 +10,8 @@ from typing import Any
 from stepgen import api
 from stepgen.datasheet.page import render_datasheet
 from stepgen.datasheet.report import Report
-from stepgen.plan.model import Plan
+from stepgen.devices import Pin
+from stepgen.plan.model import MotorPlan, Plan
 
 ROOT = Path(__file__).resolve().parents[2]
 SPECS = sorted((ROOT / "specs").glob("*.yaml"))
@@ -58,6 +59,14 @@ def report_of(plan: Plan, **changes: Any) -> Report:  # noqa: ANN401 - fields of
         "stack_bound_bytes": 7701,
     }
     return Report.model_validate(found | changes)
+
+
+def ends_of(motor: MotorPlan) -> list[tuple[str, Pin]]:
+    """
+    Return what is wired to *motor*: signal and pin of each wire, those of its switches last.
+    """
+    wires = [(wire.signal, wire.pin) for wire in motor.drive.every_wire]
+    return wires + [(switch.signal, switch.pin) for switch in motor.end_switches]
 
 
 class Reader(HTMLParser):

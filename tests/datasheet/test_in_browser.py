@@ -29,6 +29,7 @@ LOOKED_AT = (
     "pro-mini-8mhz_28byj48",
     "mega_stacked_shields_variable",
     "uno_28byj48_ramp",
+    "uno_homing",
 )
 LEAST_POINTS = 7.5
 
@@ -60,6 +61,17 @@ motors:
         drive: {kind: four-wire, pins: [D40, D42, D44, D59]}}
   tilt: {timing: {kind: compare, timer: 5, channel: A}, motion: update-events,
          drive: {kind: four-wire, pins: [D50, D51, D52, D53], sequence: half}}
+""".replace("MOVE", "motion: {kind: trapezoid, cruise_speed: 1500, acceleration: 3000}")
+
+
+SWITCHES = """\
+library: Switches
+board: mega
+motors:
+  aMotorWithTheLongestNameOfAll31: {timing: {kind: compare, timer: 1, channel: A}, MOVE,
+      drive: {kind: step-dir, driver: a4988, socket: ramps-1.4 X}, limits: {low: D14, high: D15}}
+  sensed: {timing: {kind: compare, timer: 1, channel: B}, MOVE, drive: motor-shield,
+      limits: {high: {pin: D40, pull_up: false}, low: {pin: D41, active: high}}}
 """.replace("MOVE", "motion: {kind: trapezoid, cruise_speed: 1500, acceleration: 3000}")
 
 
@@ -119,12 +131,15 @@ def test_everything_can_be_read(tmp_path: Path, name: str, scheme: str) -> None:
     assert found["overlapping"] == []
 
 
-def test_a_crowded_picture_can_be_read(tmp_path: Path) -> None:
+@pytest.mark.parametrize("text", [CROWDED, SWITCHES], ids=["motors", "switches"])
+def test_a_crowded_picture_can_be_read(tmp_path: Path, text: str) -> None:
     """
     Four motors with long names on one Mega, with wires from every side and both inner rows.
+
+    So can that of switches of every kind, where a long name stands above them.
     """
     path = tmp_path / "crowded.yaml"
-    path.write_text(CROWDED, encoding="utf-8")
+    path.write_text(text, encoding="utf-8")
     found = looked_at(tmp_path, page(path), "--window-size=1100,5000")
 
     assert found["faint"] == []

@@ -16,7 +16,7 @@ from stepgen.datasheet.page import PATH, render_datasheet
 from stepgen.datasheet.wiring import wiring_scene
 from stepgen.devices import Board, boards
 from stepgen.devices.outlines import OUTLINES, Outline, outline_of
-from tests.datasheet.pages import SPECS, Reader, page, report_of, spec, words
+from tests.datasheet.pages import SPECS, Reader, ends_of, page, report_of, spec, words
 
 MOST_BYTES = 50_000
 HOSTILE = (
@@ -45,7 +45,7 @@ def test_every_library_has_its_page(path: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_every_wire_is_drawn_from_its_pin_to_the_driver(path: Path) -> None:
     """
-    Each wire has a line that begins at its pin and ends at the left edge of a driver.
+    Each has a line that begins at its pin and ends at the left edge of a driver, or of switches.
     """
     plan = api.plan(path)
     scene = wiring_scene(plan)
@@ -55,8 +55,8 @@ def test_every_wire_is_drawn_from_its_pin_to_the_driver(path: Path) -> None:
 
     assert len(edges) == len(plan.motors)
     for motor in plan.motors:
-        for wire in motor.drive.every_wire:
-            title = f"motor {motor.name}, {wire.signal}: {wire.pin.label} ({wire.pin.bit.name})"
+        for signal, pin in ends_of(motor):
+            title = f"motor {motor.name}, {signal}: {pin.label} ({pin.bit.name})"
             way = lines[title]
             start = re.match(r"M([\d.]+) ([\d.]+)", way)
             assert start
@@ -134,6 +134,58 @@ def test_a_drive_without_looks_of_its_own_is_drawn_from_its_wires() -> None:
     assert sum("wire" in stroke.css.split() for stroke in scene.strokes) == len(signals) + 1
 
 
+def test_the_picture_shows_what_each_switch_does(tmp_path: Path) -> None:
+    """
+    One to ground is open before the end or closed there, and a pin without pull-up has a sensor.
+    """
+    path = tmp_path / "spec.yaml"
+    text = spec("uno_homing").read_text(encoding="utf-8")
+    path.write_text(text.replace("active: high", "pull_up: false"), encoding="utf-8")
+    homing, sensed = (wiring_scene(api.plan(one)) for one in (spec("uno_homing"), path))
+    levers = {stroke.title: stroke.d for stroke in homing.strokes if "switch of" in stroke.title}
+
+    assert re.search(r"l18 -8M", levers["motor slide, switch of the low end: closes there"])
+    assert re.search(r"l18 0M", levers["motor slide, switch of the high end: opens there"])
+    texts = [label.text for label in homing.labels]
+    assert texts.index("LOW at the end") > 0
+    assert "HIGH at the end" in texts
+    assert "sensor" not in texts
+    assert [label.text for label in sensed.labels].count("sensor") == 1
+    assert not any("switch of the high end" in stroke.title for stroke in sensed.strokes)
+
+
+def test_the_limits_of_a_motor_are_told() -> None:
+    """
+    Speeds and ways are those of the spec at 80 steps in a millimetre; others have no such table.
+    """
+    text = page(spec("uno_homing"))
+    tables = Reader(text).captions
+
+    assert tables["slide: limits"][1:] == [
+        ["low end", "D9 (PB1), LOW when pressed, pulled up by the chip"],
+        ["high end", "D10 (PB2), HIGH when pressed, pulled up by the chip"],
+        ["range", "0 to 14400 steps: 0 to 180 mm"],
+        [
+            "homing",
+            (
+                "to the low switch at 2400 steps/s, for 17600 steps at most; "
+                "back by 240, and to it at 400 steps/s"
+            ),
+        ],
+        ["home", "the switch is position -80; rest at 0"],
+    ]
+    assert tables["slide: wires"][-2:] == [
+        ["low end", "D9", "PB1", "input, LOW there"],
+        ["high end", "D10", "PB2", "input, HIGH there"],
+    ]
+    ownership = tables["Timers, vectors and ports"]
+    assert [row[-1] for row in ownership] == ["switches", "D9 (low end), D10 (high end)"]
+    assert "slide, range 0 to 14400 steps" in words(text)
+    others = Reader(page(spec("uno_trapezoid"))).captions
+    assert not any(caption.endswith(": limits") for caption in others)
+    assert others["Timers, vectors and ports"][0][-1] == "ports for itself"
+
+
 @pytest.mark.parametrize("text", HOSTILE)
 def test_text_of_a_spec_stays_text(tmp_path: Path, text: str) -> None:
     """
@@ -177,7 +229,7 @@ def test_the_figures_are_those_of_the_plan(path: Path) -> None:
     assert cycles["longest, allowed by the plan"] == [str(m.isr_bound_cycles) for m in plan.motors]
     for motor in plan.motors:
         assert [row[:3] for row in tables[f"{motor.name}: wires"][1:]] == [
-            [wire.signal, wire.pin.label, wire.pin.bit.name] for wire in motor.drive.every_wire
+            [signal, pin.label, pin.bit.name] for signal, pin in ends_of(motor)
         ]
 
 

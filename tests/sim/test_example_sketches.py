@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from stepgen import api
+from stepgen.verify.bench import drive_switches
 from stepgen.verify.compilers import default_compiler
 from stepgen.verify.events import Kind
 from stepgen.verify.simavr import Machine
@@ -31,10 +32,14 @@ motors:
 
 def terminal(stem: str, name: str) -> Terminal:
     """
-    Return the board of a spec with one of its examples.
+    Return the board of a spec with one of its examples, and nobody at its limit switches.
     """
     spec = SPECS / f"{stem}.yaml"
-    return Terminal(build_example(spec, name, default_compiler()), api.plan(spec))
+    plan = api.plan(spec)
+    board = Terminal(build_example(spec, name, default_compiler()), plan)
+    for motor in plan.motors:
+        drive_switches(board.machine, motor)
+    return board
 
 
 def step_cycles(machine: Machine, spec: Path, motor: int = 0) -> list[int]:
@@ -95,7 +100,7 @@ def test_every_console_makes_the_steps_that_are_typed(stem: str) -> None:
     for motor in plan.motors:
         name = f"{motor.name} " if plan.motors[1:] else ""
         word = "move" if motor.motion.ladder else "steps"
-        for steps, position in ((20, 20), (-30, -10)):
+        for steps, position in ((30, 30), (-20, 10)):  # a range may begin at 0
             board.enter(f"{name}{word} {steps}", "ok")
             board.wait(0.3)
             board.enter(f"{name}status", f"{motor.name} at rest, at step {position}")

@@ -166,3 +166,114 @@ def test_no_example_asks_for_more_than_the_library_accepts(generate: Generate) -
         assert "motorTimerCalcPerSecond(90)" in files[f"examples/{name}/{name}.ino"]
     assert "From 22 steps/s" in files["examples/Ramp/Ramp.ino"]
     assert "to 90 steps/s" in files["examples/Ramp/Ramp.ino"]
+
+
+SLIDE = """\
+board: uno
+motors:
+  slide:
+    drive: {kind: step-dir, step: D3, dir: D5, driver: A4988}
+    timing: {kind: compare, timer: 1}
+    at_rest: hold
+    motion: {kind: trapezoid, cruise_speed: 1000, acceleration: 5000}
+    limits: {LIMITS}
+"""
+HOMING = (
+    "homing: {towards: END, speed: 300, slow_speed: 50, back_off: 30, travel: 900, position: 40}"
+)
+
+
+@pytest.mark.parametrize(
+    ("limits", "near", "far"),
+    [
+        (f"low: D9, {HOMING.replace('END', 'low')}", 40, 240),
+        (f"high: D9, {HOMING.replace('END', 'high')}", 40, -160),
+        (f"low: D9, range: [50, 700], {HOMING.replace('END', 'low')}", 50, 700),
+    ],
+)
+def test_home_goes_to_and_fro_where_it_may(
+    generate: Generate, limits: str, near: int, far: int
+) -> None:
+    """
+    Between the ends of the range, or without one 200 steps away from the switch and back.
+    """
+    files = generate(SLIDE.replace("LIMITS", limits))
+    sketch = files["examples/Home/Home.ino"]
+
+    assert names(files) == ALWAYS | {"Console", "Home"}
+    assert f"constexpr int32_t kSlideNear = {near};" in sketch
+    assert f"constexpr int32_t kSlideFar = {far};" in sketch
+    assert "\n| Home | " in files["README.md"]
+
+
+def test_only_a_motor_that_homes_has_home(generate: Generate) -> None:
+    """
+    Switches alone find nothing; the console has words for their faults, but not for homing.
+    """
+    files = generate(SLIDE.replace("LIMITS", "low: D9"))
+    console = files["examples/Console/Console.ino"]
+
+    assert names(files) == ALWAYS | {"Console"}
+    assert '"clear        ' in console
+    assert '"home         ' not in console
+    assert "MOTOR_FAULT_HOMING" not in console
+
+
+def test_a_switch_on_a_pin_of_serial_leaves_nothing_to_type(generate: Generate) -> None:
+    """
+    Neither Console nor Home is there, and the README says that the motor has the pin.
+    """
+    files = generate(SLIDE.replace("LIMITS", f"low: D0, {HOMING.replace('END', 'low')}"))
+
+    assert names(files) == ALWAYS
+    for name in ("Console", "Home"):
+        assert f"There is no {name}, which needs Serial: motor slide has D0." in files["README.md"]
+
+
+def test_others_do_not_get_the_pin_of_a_switch(generate: Generate) -> None:
+    """
+    Without the switch tone would have D8, the first free pin of port B.
+    """
+    text = SLIDE.replace("uno\n", "uno\nuses: [tone]\n")
+    pins = []
+    for switch in ("D4", "D8"):
+        files = generate(text.replace("LIMITS", f"low: {switch}"))
+        pins += re.findall(r"tone\((\d+), ", files["examples/Together/Together.ino"])
+
+    assert set(pins) == {"8", "9"}
+
+
+@pytest.mark.parametrize(
+    ("limits", "words"),
+    [("low: D9", "for ever"), ("range: [0, 700]", "to the end of its range")],
+)
+def test_smallest_says_how_long_the_motor_turns(
+    generate: Generate, limits: str, words: str
+) -> None:
+    """
+    A motor with a range turns to its end and stands there.
+    """
+    files = generate(SLIDE.replace("LIMITS", limits))
+
+    assert f"slide from the start, {words}." in files["examples/Smallest/Smallest.ino"]
+    assert f"| slide from the start, {words}: where to begin |" in files["README.md"]
+
+
+@pytest.mark.parametrize(
+    ("limits", "line"),
+    [
+        ("low: D9", "- Pin D9 (low end): an input for the limit switch of slide.\n"),
+        (
+            "low: D9, high: D10",
+            "- Pins D9 (low end) and D10 (high end): inputs for the limit switches of slide.\n",
+        ),
+    ],
+)
+def test_the_readme_names_the_pins_of_switches(generate: Generate, limits: str, line: str) -> None:
+    """
+    Among what the library takes, and in the table of the wiring.
+    """
+    readme = generate(SLIDE.replace("LIMITS", limits))["README.md"]
+
+    assert line in readme
+    assert "\n| low end | D9 | PB1 |\n" in readme

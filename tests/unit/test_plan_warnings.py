@@ -176,3 +176,24 @@ def test_usb_of_the_core_can_hold_a_motor_up(warned: Warned) -> None:
     assert 800 < int(rate) < 1000
     assert held == ["motor pan: nothing bounds USB", "motor pan: nothing bounds Serial"]
     assert not any("nothing bounds" in text for text in warned(_spec("uno", pins, 1, "Serial")))
+
+
+def test_pins_of_switches_are_a_motors_own(warned: Warned) -> None:
+    """
+    A limit switch on D9 leaves D10's PWM to warn of; one on D13 is on the LED and on SPI's clock.
+    """
+    text = """\
+board: uno
+motors:
+  slide:
+    drive: {kind: step-dir, step: D2, dir: D5, driver: A4988}
+    timing: {kind: compare, timer: 1}
+    at_rest: hold
+    motion: {kind: trapezoid, cruise_speed: 1000, acceleration: 5000}
+    limits: {low: D9, high: D13}
+"""
+    found = warned(text)
+
+    assert any("no analogWrite() on D10, PWM of timer 1" in line for line in found)
+    assert any("SPI needs D13 and will not work beside it" in line for line in found)
+    assert "motor slide: D13 is the board's LED; the sketch must leave LED_BUILTIN alone" in found

@@ -2,6 +2,7 @@
 The JSON Schema: what a user may write fits it, and what it is for stands beside each field.
 """
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -98,3 +99,24 @@ def test_every_field_says_what_it_is_for() -> None:
     ]
 
     assert silent == []
+
+
+def _with_defaults(schema: Any) -> Iterator[dict[str, Any]]:  # noqa: ANN401 - any JSON
+    for part in schema.values() if isinstance(schema, dict) else schema:
+        if isinstance(part, dict | list):
+            yield from _with_defaults(part)
+    if isinstance(schema, dict) and "default" in schema:
+        yield schema
+
+
+def test_every_default_may_be_written() -> None:
+    """
+    What the schema names as the default of a field fits that field: an editor may fill it in.
+    """
+    schema = api.schema()
+    found = list(_with_defaults(schema))
+
+    assert len(found) > 20
+    for part in found:
+        validator = Draft202012Validator(part | {"$defs": schema["$defs"]})
+        assert validator.is_valid(part["default"]), part

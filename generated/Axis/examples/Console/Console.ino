@@ -23,8 +23,8 @@ struct Axis {
   int8_t (*moveTo)(int32_t target);
   int8_t (*move)(int32_t steps);
   int8_t (*setSpeed)(uint32_t interval);
-  void (*runForward)();
-  void (*runBackward)();
+  int8_t (*runForward)();
+  int8_t (*runBackward)();
   void (*stop)();
   void (*halt)();
   int8_t (*setPosition)(int32_t position);
@@ -84,18 +84,23 @@ static bool readNumber(const char *text, int32_t &number) {
   return end != text && *end == '\0';
 }
 
+// Says it on a line of its own.
+static void say(const __FlashStringHelper *words) {
+  Serial.println(words);
+}
+
 // Says what the library answered.
 static void answer(int8_t result) {
-  if (result == MOTOR_ERROR_RUNNING) {
-    Serial.println(F("not while it runs"));
-    return;
+  switch (result) {
+    case 0: return say(F("ok"));
+    case MOTOR_ERROR_RUNNING: return say(F("not while it runs"));
+    default: return say(F("refused"));
   }
-  Serial.println(result ? F("refused") : F("ok"));
 }
 
 // Says what was not understood.
 static void ask() {
-  Serial.println(F("what? type help"));
+  say(F("what? type help"));
 }
 
 // Says where a motor is, and whether it moves.
@@ -107,14 +112,19 @@ static void printPosition(const char *name, bool runs, int32_t position) {
 
 // Cruises at that speed from now on.
 static void cruise(const Axis &axis, int32_t speed) {
-  if (axis.setSpeed(speed > 0 ? motorInterval(speed) : 0) == 0) {
-    answer(0);
+  const int8_t result = axis.setSpeed(speed > 0 ? motorInterval(speed) : 0);
+  if (result == MOTOR_ERROR_TOO_FAST) {
+    say(F("that is no speed, or faster than the spec's"));
   } else {
-    Serial.println(F("that is no speed, or faster than the spec's"));
+    answer(result);
   }
 }
 
-// Does what has no result.
+// Does what has a result, and what has none.
+static void act(int8_t (*function)()) {
+  answer(function());
+}
+
 static void act(void (*function)()) {
   function();
   answer(0);
@@ -158,9 +168,9 @@ static void obey(const Axis &axis, const char *word, const char *rest) {
   } else if (is(word, F("zero"))) {
     answer(axis.setPosition(0));
   } else if (is(word, F("on"))) {
-    answer(axis.on());
+    act(axis.on);
   } else if (is(word, F("off"))) {
-    answer(axis.off());
+    act(axis.off);
   } else if (is(word, F("status"))) {
     printStatus(axis);
   } else {

@@ -1,4 +1,4 @@
-// The smallest sketch: slide from the start, for ever.
+// The smallest sketch: slide from the start, to the end of its range.
 
 #include <HomingSlide.h>
 

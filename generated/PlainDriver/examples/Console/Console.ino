@@ -82,14 +82,22 @@ static bool readNumber(const char *text, int32_t &number) {
   return end != text && *end == '\0';
 }
 
+// Says it on a line of its own.
+static void say(const __FlashStringHelper *words) {
+  Serial.println(words);
+}
+
 // Says what the library answered.
 static void answer(int8_t result) {
-  Serial.println(result ? F("refused") : F("ok"));
+  switch (result) {
+    case 0: return say(F("ok"));
+    default: return say(F("refused"));
+  }
 }
 
 // Says what was not understood.
 static void ask() {
-  Serial.println(F("what? type help"));
+  say(F("what? type help"));
 }
 
 // Says where a motor is, and whether it moves.
@@ -144,7 +152,7 @@ static void obey(Motor &motor, const char *word, const char *rest) {
   } else if (is(word, F("steps")) && numbered) {
     answer(motor.setSpeed(controlFor(number), motor.interval, magnitude(number)));
   } else if (is(word, F("speed")) || is(word, F("steps"))) {
-    Serial.println(F("that needs a number, and not 0"));
+    say(F("that needs a number, and not 0"));
   } else if (is(word, F("stop"))) {
     stop(motor);
     answer(0);

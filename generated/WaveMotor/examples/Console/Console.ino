@@ -73,18 +73,23 @@ static bool readNumber(const char *text, int32_t &number) {
   return end != text && *end == '\0';
 }
 
+// Says it on a line of its own.
+static void say(const __FlashStringHelper *words) {
+  Serial.println(words);
+}
+
 // Says what the library answered.
 static void answer(int8_t result) {
-  if (result == MOTOR_ERROR_RUNNING) {
-    Serial.println(F("not while it runs"));
-    return;
+  switch (result) {
+    case 0: return say(F("ok"));
+    case MOTOR_ERROR_RUNNING: return say(F("not while it runs"));
+    default: return say(F("refused"));
   }
-  Serial.println(result ? F("refused") : F("ok"));
 }
 
 // Says what was not understood.
 static void ask() {
-  Serial.println(F("what? type help"));
+  say(F("what? type help"));
 }
 
 // Says where a motor is, and whether it moves.
@@ -139,7 +144,7 @@ static void obey(Motor &motor, const char *word, const char *rest) {
   } else if (is(word, F("steps")) && numbered) {
     answer(motor.setSpeed(controlFor(number), motor.interval, magnitude(number)));
   } else if (is(word, F("speed")) || is(word, F("steps"))) {
-    Serial.println(F("that needs a number, and not 0"));
+    say(F("that needs a number, and not 0"));
   } else if (is(word, F("stop"))) {
     stop(motor);
     answer(0);
