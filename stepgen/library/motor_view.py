@@ -27,6 +27,7 @@ from stepgen.library.timings import TimerView, timer_view
 from stepgen.plan.model import MotorPlan, Plan
 
 _LARGEST_UINT16, _LARGEST_UINT32 = 0xFFFF, 0xFFFF_FFFF
+_EXAMPLE_STEPS = 200
 _MINUTE = "60ULL * motorTimerGetIOclocksPerSecond() for one a minute;"
 
 
@@ -116,6 +117,7 @@ class MotorView:
     wires: tuple[Named, ...]
     example_speed_sps: int
     turn_steps: str
+    turn_back: str
     turn_text: str
     loop_text: str
 
@@ -125,6 +127,7 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
     Return everything that the templates print about *motor* of *plan*.
     """
     storage, board, drive = motor.storage, plan.board, motor.drive
+    places = _turn_places(motor)
     mcu, need = board.mcu, need_of(motor, plan)
     lows = [wire for wire in drive.every_wire if not (need and wire in drive.enables)]
     return MotorView(
@@ -176,10 +179,40 @@ def motor_view(motor: MotorPlan, plan: Plan) -> MotorView:
         operands=operand_lines(motor),
         wires=tuple(_wires(motor)),
         example_speed_sps=example_speed_sps(plan),
-        turn_steps=f"{motor.name}StepsForTurns(1)" if motor.steps_per_turn else "200",
-        turn_text="One turn" if motor.steps_per_turn else "200 steps",
+        turn_steps=places[1],
+        turn_back=places[0],
+        turn_text=_turn_text(motor),
         loop_text=_loop_text(motor),
     )
+
+
+def _turn_text(motor: MotorPlan) -> str:
+    """
+    Return how far the examples turn *motor*: a turn, unless its range is shorter.
+    """
+    near, far = example_places(motor)
+    steps = far - near
+    if motor.steps_per_turn and steps == round(motor.steps_per_turn):
+        return "One turn"
+    return f"{steps} steps"
+
+
+def _turn_places(motor: MotorPlan) -> tuple[str, str]:
+    """
+    Return the places between which the examples turn *motor*, as C text.
+    """
+    near, far = example_places(motor)
+    if motor.steps_per_turn and (near, far) == (0, round(motor.steps_per_turn)):
+        return "0", f"{motor.name}StepsForTurns(1)"
+    return str(near), str(far)
+
+
+def example_places(motor: MotorPlan) -> tuple[int, int]:
+    """
+    Return the places between which the examples turn *motor*, in steps.
+    """
+    steps = round(motor.steps_per_turn) if motor.steps_per_turn else _EXAMPLE_STEPS
+    return motor.end_stops.to_and_fro(steps) if motor.end_stops else (0, steps)
 
 
 def has_long_periods(plan: Plan) -> bool:

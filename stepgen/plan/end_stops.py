@@ -106,6 +106,16 @@ class EndStops:
     range: tuple[int, int] | None
     homing: HomingPlan | None
 
+    def to_and_fro(self, steps: int) -> tuple[int, int]:
+        """
+        Return two places of the range, *steps* apart if it is as long: 0 is one, if it has that.
+        """
+        lowest, highest = self.range or (0, steps)
+        here = min(max(0, lowest), highest)
+        if here + steps <= highest:
+            return here, here + steps
+        return max(highest - steps, lowest), highest
+
     def limited(self, motion: Motion) -> Motion:
         """
         Return *motion*, whose calls and handler have these limits to look at.

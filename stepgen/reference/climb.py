@@ -54,6 +54,15 @@ class Climb:
         if left != 0:
             self._decide()
 
+    def wait_first(self, interval_256: int) -> None:
+        """
+        Let the first step of a leg that has just begun come after *interval_256*, by itself.
+
+        What comes next is decided after it.
+        """
+        self._number = 0
+        self._visit(1, interval_256)
+
     def redirect(self, ahead: int | None) -> None:
         """
         Lead to *ahead* steps from here, None without an end; if that is too near, only to rest.

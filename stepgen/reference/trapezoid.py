@@ -82,6 +82,7 @@ class TrapezoidModel:
         self._pace = FinePace(service_cycle, set_cycle, again_cycle=again_cycle)
         self._notices = Notices()
         self._climb = Climb(facts.ladder, facts.cruise_256)
+        self._slowest_256 = facts.ladder.first_interval_256
         self._limits = facts.end_stops or EndStopFacts(frozenset())
         self._stops = EndStopState()
         self._running = False
@@ -413,7 +414,9 @@ class TrapezoidModel:
         self._pace.stop()
         self._begin_leg(cycle, direction)
         self._axis.switch(cycle, on=True, call_index=self._call_index)
-        first = max(self._climb.interval_256, self._facts.wake_cycles * FRACTIONS)
+        if self._facts.wake_cycles:
+            self._climb.wait_first(max(self._slowest_256, self._facts.wake_cycles * FRACTIONS))
+        first = self._climb.interval_256
         self._pace.begin_256(first)
         self._starts.append(Start(cycle, first // FRACTIONS))
         self._running = True

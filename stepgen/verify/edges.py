@@ -9,7 +9,7 @@ reads the position must get the number of neighbours that went by.
 from collections.abc import Iterator, Sequence
 
 from stepgen.reference.axis import wrapped_int32
-from stepgen.verify.bench import CallKind
+from stepgen.verify.bench import Answer, CallKind
 from stepgen.verify.drives import Levels
 from stepgen.verify.happenings import PositionRead, masked_reads
 from stepgen.verify.oracle import Scene
@@ -76,17 +76,30 @@ def _happenings(
             upcoming = next(states, None)
         if run.writes:
             yield run.writes[-1].cycle, subject.pattern(ports), None, None
-    for answer in scene.answers:
-        if answer.call.motor != index:
-            continue
-        first = scene.trace.commit(answer.begin_cycle, answer.end_cycle)
-        place = masked_reads(subject.facts).index(PositionRead)
-        read = scene.trace.commit(answer.begin_cycle, answer.end_cycle, place)
-        if answer.call.kind is CallKind.READ and read:
-            yield read[0], None, answer.position, None
-        elif answer.call.kind is CallKind.INIT and first:
+    yield from _told(subject, scene, [one for one in scene.answers if one.call.motor == index])
+
+
+def _told(subject: Subject, scene: Scene, answers: Sequence[Answer]) -> Iterator[_Happening]:
+    """
+    Yield what the sketch was told of the position by its calls, and what it told the motor of it.
+
+    An axis that comes home gives its place another number: what is read at rest then.
+    """
+    homing = False
+    place = masked_reads(subject.facts).index(PositionRead)
+    for answer in answers:
+        kind, ends = answer.call.kind, (answer.begin_cycle, answer.end_cycle)
+        if kind in {CallKind.HOME, CallKind.INIT} and not answer.result:
+            homing = kind is CallKind.HOME
+        first, read = scene.trace.commit(*ends), scene.trace.commit(*ends, place)
+        if kind is CallKind.READ and read:
+            known = (None, answer.position) if homing else (answer.position, None)
+            if not homing or not answer.running:
+                yield read[0], None, *known
+            homing = homing and bool(answer.running)
+        elif kind is CallKind.INIT and first:
             yield first[0], None, None, None
-        elif answer.call.kind is CallKind.SET_POSITION and first and not answer.result:
+        elif kind is CallKind.SET_POSITION and first and not answer.result:
             yield first[0], None, None, answer.call.steps
 
 

@@ -93,6 +93,7 @@ def _calls(trace: Trace, subject: Subject, index: int, plan: Plan) -> list[Answe
             control = BACK if goes_back else DRIVE
             call = Call(CallKind.SET_SPEED, index, control, top, steps)
             if subject.is_axis:
-                call = Call(CallKind.MOVE_TO, index, steps=0 if goes_back else steps)
+                near, far = motor.end_stops.to_and_fro(steps) if motor.end_stops else (0, steps)
+                call = Call(CallKind.MOVE_TO, index, steps=near if goes_back else far)
             answers.append(Answer(call, *section, result=0, status=0, position=0))
     return answers

@@ -552,6 +552,21 @@ def test_a_driver_that_wakes_up_gets_a_longer_first_interval() -> None:
     assert steps(model) == [6_000, 7_000, 8_000]
 
 
+def test_the_ramp_of_a_driver_that_wakes_up_begins_with_the_second_step() -> None:
+    """
+    Of nine steps the first comes by itself, and eight go up and down the ladder.
+    """
+    model = model_of(MoveTo(1_000, 9), ChannelSet(1_020, 4_980), axis=facts(wake=5_000))
+    deadlines = steps(model)
+
+    assert deadlines[0] == 6_000
+    assert [after - before for before, after in pairwise(deadlines)] == [
+        *(1_000, 900, 800),
+        *(700, 700),
+        *(800, 900, 1_000),
+    ]
+
+
 def test_dir_turns_with_the_last_step_of_a_leg() -> None:
     """
     The next leg begins then; from rest it turns with the call.

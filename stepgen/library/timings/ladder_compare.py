@@ -15,6 +15,8 @@ def view(motor: MotorPlan) -> WideCompareView:
     Return what the partial prints of the channel of *motor*.
     """
     wake = motor.wake_cycles * FRACTION
+    if wake and motor.motion.ladder:
+        wake = max(wake, motor.motion.ladder.first_interval_256)
     return replace(
         wide_compare.view(motor),
         struct_prefix="",

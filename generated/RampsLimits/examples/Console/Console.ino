@@ -10,9 +10,12 @@ static const char kHelp[] PROGMEM =
     "AXIS to 2000      move to that position\n"
     "AXIS move -2000   so many steps from here\n"
     "AXIS speed 500    cruise at 500 steps/s from now on\n"
-    "AXIS run          forward without an end; back: backward\n"
+    "AXIS run          forward as far as it may; back: backward\n"
     "AXIS stop         slow down to rest; halt: at once\n"
     "AXIS zero         call this place 0, while it stands\n"
+    "AXIS home         look for the limit switch\n"
+    "AXIS fault        why it moves no more\n"
+    "AXIS clear        let it move again\n"
     "AXIS on           coils on, while it stands\n"
     "AXIS off          coils off, while it stands\n"
     "AXIS status       does it run, and where is it\n"
@@ -27,13 +30,16 @@ struct Axis {
   int8_t (*moveTo)(int32_t target);
   int8_t (*move)(int32_t steps);
   int8_t (*setSpeed)(uint32_t interval);
-  void (*runForward)();
-  void (*runBackward)();
+  int8_t (*runForward)();
+  int8_t (*runBackward)();
   void (*stop)();
   void (*halt)();
   int8_t (*setPosition)(int32_t position);
   int32_t (*position)();
   bool (*isRunning)();
+  int8_t (*home)();  // null where there is none
+  uint8_t (*fault)();
+  void (*clear)();
   int8_t (*on)();
   int8_t (*off)();
 };
@@ -41,13 +47,16 @@ struct Axis {
 static const Axis axes[] = {
     {"x",
      xMoveTo, xMove, xSetSpeed, xRunForward, xRunBackward, xStop, xHalt, xSetCurrentPosition,
-     xCurrentPosition, xIsRunning, xEnableOutputs, xDisableOutputs},
+     xCurrentPosition, xIsRunning, xHome, xReadFault, xClearFault, xEnableOutputs,
+     xDisableOutputs},
     {"y",
      yMoveTo, yMove, ySetSpeed, yRunForward, yRunBackward, yStop, yHalt, ySetCurrentPosition,
-     yCurrentPosition, yIsRunning, yEnableOutputs, yDisableOutputs},
+     yCurrentPosition, yIsRunning, nullptr, yReadFault, yClearFault, yEnableOutputs,
+     yDisableOutputs},
     {"z",
      zMoveTo, zMove, zSetSpeed, zRunForward, zRunBackward, zStop, zHalt, zSetCurrentPosition,
-     zCurrentPosition, zIsRunning, zEnableOutputs, zDisableOutputs},
+     zCurrentPosition, zIsRunning, nullptr, zReadFault, zClearFault, zEnableOutputs,
+     zDisableOutputs},
 };
 
 constexpr int kRoom = 62;  // no line that is printed is longer; the core has room for more
@@ -95,18 +104,26 @@ static bool readNumber(const char *text, int32_t &number) {
   return end != text && *end == '\0';
 }
 
+// Says it on a line of its own.
+static void say(const __FlashStringHelper *words) {
+  Serial.println(words);
+}
+
 // Says what the library answered.
 static void answer(int8_t result) {
-  if (result == MOTOR_ERROR_RUNNING) {
-    Serial.println(F("not while it runs"));
-    return;
+  switch (result) {
+    case 0: return say(F("ok"));
+    case MOTOR_ERROR_RUNNING: return say(F("not while it runs"));
+    case MOTOR_ERROR_RANGE: return say(F("that is beyond its range"));
+    case MOTOR_ERROR_HOMING: return say(F("not while it looks for home"));
+    case MOTOR_ERROR_FAULT: return say(F("not until you clear the fault"));
+    default: return say(F("refused"));
   }
-  Serial.println(result ? F("refused") : F("ok"));
 }
 
 // Says what was not understood.
 static void ask() {
-  Serial.println(F("what? type help"));
+  say(F("what? type help"));
 }
 
 // Says where a motor is, and whether it moves.
@@ -118,17 +135,32 @@ static void printPosition(const char *name, bool runs, int32_t position) {
 
 // Cruises at that speed from now on.
 static void cruise(const Axis &axis, int32_t speed) {
-  if (axis.setSpeed(speed > 0 ? motorInterval(speed) : 0) == 0) {
-    answer(0);
+  const int8_t result = axis.setSpeed(speed > 0 ? motorInterval(speed) : 0);
+  if (result == MOTOR_ERROR_TOO_FAST) {
+    say(F("that is no speed, or faster than the spec's"));
   } else {
-    Serial.println(F("that is no speed, or faster than the spec's"));
+    answer(result);
   }
 }
 
-// Does what has no result.
+// Does what has a result, and what has none.
+static void act(int8_t (*function)()) {
+  answer(function());
+}
+
 static void act(void (*function)()) {
   function();
   answer(0);
+}
+
+// Says why a motor moves no more.
+static void tell(uint8_t (*readFault)()) {
+  switch (readFault()) {
+    case MOTOR_FAULT_LIMIT: return say(F("stopped at a limit switch"));
+    case MOTOR_FAULT_HOMING: return say(F("has not found its switch, or that stays pressed"));
+    case MOTOR_FAULT_EMERGENCY: return say(F("stopped in an emergency"));
+    default: return say(F("no fault"));
+  }
 }
 
 static void stop(const Axis &axis) {
@@ -168,10 +200,16 @@ static void obey(const Axis &axis, const char *word, const char *rest) {
     act(axis.halt);
   } else if (is(word, F("zero"))) {
     answer(axis.setPosition(0));
+  } else if (is(word, F("home")) && axis.home) {
+    act(axis.home);
+  } else if (is(word, F("fault"))) {
+    tell(axis.fault);
+  } else if (is(word, F("clear"))) {
+    act(axis.clear);
   } else if (is(word, F("on"))) {
-    answer(axis.on());
+    act(axis.on);
   } else if (is(word, F("off"))) {
-    answer(axis.off());
+    act(axis.off);
   } else if (is(word, F("status"))) {
     printStatus(axis);
   } else {

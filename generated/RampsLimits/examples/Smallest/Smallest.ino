@@ -1,4 +1,4 @@
-// The smallest sketch: x and y and z from the start, for ever.
+// The smallest sketch: x and y and z from the start, for ever or to the end of its range.
 
 #include <RampsLimits.h>
 
