@@ -131,7 +131,9 @@ def _way_out(motor: MotorPlan, library: LibraryClaims, plan: Plan) -> str:
     busy = {motor.timing.timer.number for motor in plan.motors} | {library.timers[0]}
     for use in accepted_uses(plan.uses, plan.board):
         busy.update(use.timers)
-    timers = [timer.number for timer in plan.board.mcu.timers]
+    mcu = plan.board.mcu
+    # Ramps need a compare channel of 16 bits.
+    timers = [timer.number for timer in (mcu.timers16 if motor.motion.ladder else mcu.timers)]
     free = tuple(number for number in timers if number not in busy)
     return f"if the sketch uses it, {way_out(motor.timing, plan.board, free)}"
 

@@ -57,6 +57,22 @@ def test_the_shield_on_the_uno_takes_a_lot(warned: Warned) -> None:
     assert led == "motor pan: D13 is the board's LED; the sketch must leave LED_BUILTIN alone"
 
 
+def test_an_axis_is_not_sent_to_timer_2(warned: Warned) -> None:
+    """
+    Ramps need a compare channel of 16 bits, of which the Uno has those of timer 1 alone.
+    """
+    found = warned(
+        "board: uno\nmotors:\n  pan:\n    drive: motor-shield\n"
+        "    timing: {kind: compare, timer: 1}\n"
+        "    motion: {kind: trapezoid, cruise_speed: 500, acceleration: 900}\n"
+    )
+
+    assert found[0] == (
+        "motor pan: Servo needs timer 1 and will not work beside it; if the sketch uses it, take a "
+        "larger board than the Arduino Uno, since no timer that fits is left on it"
+    )
+
+
 def test_a_coil_on_rx_disturbs_more_than_serial(warned: Warned) -> None:
     """
     The boot loader talks over D0 and D1, too.

@@ -111,7 +111,7 @@ def way_out(board: Board, free: tuple[int, ...]) -> str:
     """
     if free:
         return f"take `timing: {{kind: compare, timer: {free[0]}}}`"
-    return f"take a larger board than the {board.title}, since no other timer is left on it"
+    return f"take a larger board than the {board.title}, since no timer that fits is left on it"
 
 
 def gate(timing: TimerPlan, motion: Motion, storage: Storage, _mcu: Mcu) -> Gate:
