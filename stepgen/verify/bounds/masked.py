@@ -17,9 +17,9 @@ from stepgen.verify.bounds.search import Search, Way
 _SREG_IO = 0x3F
 # The library's guard. Where link-time optimisation has put one of its functions into a sketch, a
 # line of the guard, or all lines of the function, can be taken for the sketch's; the guard's name
-# stays. No example switches interrupts off itself, and the bench only by ATOMIC_BLOCK.
+# stays. No example switches interrupts off itself, and the bench only by ATOMIC_BLOCK in holdUp.
 _SKETCH = re.compile(r"bench\.cpp|\w+\.ino\.cpp")
-_ATOMIC = "__iCliRetVal"
+_HOLD_UP = re.compile(r"__iCliRetVal|_ZL6holdUpj")
 _GUARD = re.compile(r"_ZN6MaskedC\dEv|Masked::Masked\(.*\)|Masked::Masked")
 
 
@@ -76,7 +76,7 @@ class MaskedSections:
 
     def _is_of_library(self, line: Line) -> bool:
         file = line.source.split(":")[0]
-        of_sketch = _SKETCH.fullmatch(file) and line.scope != _ATOMIC
+        of_sketch = _SKETCH.fullmatch(file) and not _HOLD_UP.fullmatch(line.scope)
         return bool(file == self._source or of_sketch or _GUARD.fullmatch(line.scope))
 
     def _reach(self, start: Line) -> Reach:
