@@ -480,7 +480,7 @@ INLINE void xRunTimer() {
   TIMSK5 |= _BV(OCIE5A);
 }
 
-// Timer 5 compare match A: one step, 69 cycles from the interrupt's response to RETI; at most 994
+// Timer 5 compare match A: one step, 69 cycles from the interrupt's response to RETI; at most 1002
 // when it goes on in __vector_x_boundary. STEP rises 18 cycles after the match (28 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port F and nothing else that the sketch can see. Behind each instruction stand its cycles.
@@ -895,7 +895,7 @@ INLINE void yRunTimer() {
   TIMSK5 |= _BV(OCIE5B);
 }
 
-// Timer 5 compare match B: one step, 71 cycles from the interrupt's response to RETI; at most 940
+// Timer 5 compare match B: one step, 71 cycles from the interrupt's response to RETI; at most 948
 // when it goes on in __vector_y_boundary. STEP rises 20 cycles after the match (30 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port F and nothing else that the sketch can see. Behind each instruction stand its cycles.
@@ -1327,7 +1327,7 @@ INLINE void zRunTimer() {
   TIMSK5 |= _BV(OCIE5C);
 }
 
-// Timer 5 compare match C: one step, 78 cycles from the interrupt's response to RETI; at most 993
+// Timer 5 compare match C: one step, 78 cycles from the interrupt's response to RETI; at most 1001
 // when it goes on in __vector_z_boundary. STEP rises 23 cycles after the match (33 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port K and L and nothing else that the sketch can see. Behind each instruction stand its

@@ -481,7 +481,7 @@ INLINE void slideRunTimer() {
   TIMSK1 |= _BV(OCIE1A);
 }
 
-// Timer 1 compare match A: one step, 67 cycles from the interrupt's response to RETI; at most 993
+// Timer 1 compare match A: one step, 67 cycles from the interrupt's response to RETI; at most 1001
 // when it goes on in __vector_slide_boundary. STEP rises 17 cycles after the match (27 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port B and D and nothing else that the sketch can see. Behind each instruction stand its

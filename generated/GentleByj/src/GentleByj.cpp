@@ -525,7 +525,7 @@ INLINE void motorRunTimer() {
   TIMSK1 |= _BV(OCIE1A);
 }
 
-// Timer 1 compare match A: one step, 86 cycles from the interrupt's response to RETI; at most 951
+// Timer 1 compare match A: one step, 86 cycles from the interrupt's response to RETI; at most 959
 // when it goes on in __vector_motor_boundary. The wires change 34 cycles after the match (44 before
 // a boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port B and nothing else that the sketch can see. Behind each instruction stand its cycles.

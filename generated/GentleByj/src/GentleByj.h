@@ -51,7 +51,7 @@ constexpr uint32_t motorInterval(uint32_t stepsPerSecond) {
 }
 
 // The range of a virtual timer TOP: I/O clocks between two steps.
-constexpr uint32_t MOTOR_MIN_TOP = 545UL;  // 29357 steps/s
+constexpr uint32_t MOTOR_MIN_TOP = 546UL;  // 29304 steps/s
 constexpr uint32_t MOTOR_MAX_TOP = 67107840UL;  // 65535 * 1024: a step each 4.19 s
 
 // I/O clocks in a second: 16 MHz, divided as CLKPR says at the moment. After a

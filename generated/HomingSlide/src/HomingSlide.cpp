@@ -495,7 +495,7 @@ INLINE void slideRunTimer() {
   TIMSK1 |= _BV(OCIE1A);
 }
 
-// Timer 1 compare match A: one step, 71 cycles from the interrupt's response to RETI; at most 1202
+// Timer 1 compare match A: one step, 71 cycles from the interrupt's response to RETI; at most 1210
 // when it goes on in __vector_slide_boundary. STEP rises 21 cycles after the match (31 before a
 // boundary, up to 15 more while limit switches are pressed). In an interval of 32768 clocks or more
 // it counts laps of 16384 clocks there, too. It writes port B and D and nothing else that the

@@ -486,7 +486,7 @@ INLINE void xRunTimer() {
   TIMSK1 |= _BV(OCIE1A);
 }
 
-// Timer 1 compare match A: one step, 71 cycles from the interrupt's response to RETI; at most 1137
+// Timer 1 compare match A: one step, 71 cycles from the interrupt's response to RETI; at most 1145
 // when it goes on in __vector_x_boundary. STEP rises 20 cycles after the match (30 before a
 // boundary, up to 7 more while limit switches are pressed). In an interval of 32768 clocks or more
 // it counts laps of 16384 clocks there, too. It writes port F and nothing else that the sketch can
@@ -1054,7 +1054,7 @@ INLINE void yRunTimer() {
   TIMSK1 |= _BV(OCIE1B);
 }
 
-// Timer 1 compare match B: one step, 80 cycles from the interrupt's response to RETI; at most 1063
+// Timer 1 compare match B: one step, 80 cycles from the interrupt's response to RETI; at most 1071
 // when it goes on in __vector_y_boundary. STEP rises 28 cycles after the match (38 before a
 // boundary, up to 15 more while limit switches are pressed). In an interval of 32768 clocks or more
 // it counts laps of 16384 clocks there, too. It writes port F and nothing else that the sketch can
@@ -1630,7 +1630,7 @@ INLINE void zRunTimer() {
   TIMSK1 |= _BV(OCIE1C);
 }
 
-// Timer 1 compare match C: one step, 77 cycles from the interrupt's response to RETI; at most 949
+// Timer 1 compare match C: one step, 77 cycles from the interrupt's response to RETI; at most 957
 // when it goes on in __vector_z_boundary. STEP rises 23 cycles after the match (33 before a
 // boundary). In an interval of 32768 clocks or more it counts laps of 16384 clocks there, too. It
 // writes port K and L and nothing else that the sketch can see. Behind each instruction stand its

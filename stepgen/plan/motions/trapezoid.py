@@ -20,7 +20,7 @@ from stepgen.spec.motions.trapezoid import Trapezoid
 from stepgen.spec.quantities import Quantity
 
 _FORMS = {"wide_compare": "ladder-compare"}
-_HANDLER_CYCLES = 660
+_HANDLER_CYCLES = 668
 _QUEUE_CYCLES = 56
 _MASKED_CYCLES = 840
 _MOST_SPS = 1_000_000

@@ -94,6 +94,7 @@ MEANT = {
     "if (way >> 31) {": _AHEAD,
     "way = -way;": _MODULO,
     "const int32_t ahead = mode & kReverse ? here - destination : destination - here;": _AHEAD,
+    "first = others % kFlatSteps + 1;": _LOW_BYTES,
     "change = -change;": "it is added modulo 2**32; that it is the ramp's is proven",
     "pace += motion.change;": "the same",
     "uint16_t ticks = interval >> 8;": _PARTS,
