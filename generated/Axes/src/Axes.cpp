@@ -134,6 +134,14 @@ SHARED uint32_t positionOf(AxisMotion &axis, uint8_t count) {
   return motion.mode & kReverse ? motion.end + left : motion.end - left;
 }
 
+// Keeps the end of a run without an end far away.
+INLINE void putOff(AxisMotion &motion) {
+  if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
+    motion.rest += kFar;
+    motion.end += motion.mode & kReverse ? -kFar : kFar;
+  }
+}
+
 // Decides what comes next: as far up or down the row as it goes, or some steps at the same speed.
 // It climbs while there is room to come down again, so it never has to know how a way goes on.
 // Returns the steps of the first level.
@@ -190,10 +198,7 @@ SHARED uint8_t decide(AxisMotion &axis, const Row *ramp) {
     length = kFlatSteps;
     first = others % kFlatSteps + 1;
     levels = static_cast<uint16_t>(others << 1) >> 8;  // others / kFlatSteps
-    if ((motion.mode & (kEndless | kTurning)) == kEndless && motion.rest < kFar) {
-      motion.rest += kFar;  // the end stays far away
-      motion.end += motion.mode & kReverse ? -kFar : kFar;
-    }
+    putOff(motion);
   }
   if (interval >= kLappedInterval) {  // then each step is a boundary
     levels = 0;
@@ -344,7 +349,8 @@ static uint8_t cruiseAt(AxisMotion &axis, uint8_t count, uint32_t interval, uint
   motion.goal = goal;
   motion.cruise = interval;
   if (!(motion.mode & kRunning)) return count;
-  const uint32_t left = stepsLeft(motion, count);
+  motion.rest = stepsLeft(motion, count);
+  putOff(motion);
   bool climbs;
   count = cut(motion, count, climbs);
   if (climbs) {
@@ -354,7 +360,7 @@ static uint8_t cruiseAt(AxisMotion &axis, uint8_t count, uint32_t interval, uint
       count = 1;
     }
   }
-  motion.rest = left - count;
+  motion.rest -= count;
   return count;
 }
 

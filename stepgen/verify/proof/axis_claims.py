@@ -366,7 +366,7 @@ def boundary(way: AxisWay) -> Said:
             before.is_in(RUNNING), after.is_in(RUNNING) == z3.Not(z3.And(over, z3.Not(onward)))
         ),
     )
-    same = z3.Or(before.is_endless, after.left == before.left - z3.If(steps, _one(40), 0))
+    same = z3.Or(before.is_endless, after.left == before.left - z3.If(steps, _one(BITS), 0))
     yield "a step less is left of the way", z3.Or(z3.Not(before.is_in(RUNNING)), over, same)
     turned = z3.And(over, before.is_in(TURNING))
     yield (

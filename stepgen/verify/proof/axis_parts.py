@@ -19,6 +19,7 @@ from stepgen.verify.proof.axis_state import (
     RUNNING,
     TURNING,
     AxisState,
+    goes_far,
     many_are_left,
     of_way,
 )
@@ -82,6 +83,7 @@ def _needs_of_decide(state: AxisState, _: Mapping[str, Any]) -> Said:
     yield "there is room to come to rest", z3.UGE(rest, z3.ZeroExt(16, state.of("height")))
     yield "steps are left, at most 2**31", z3.And(rest != 0, z3.ULE(rest, MOST_STEPS))
     yield "without an end, many steps are left", z3.Implies(state.is_endless, many_are_left(state))
+    yield "a run that turns goes far", goes_far(state)
     yield (
         "the way leads to the destination",
         z3.Implies(ends, state.of("end") == state.of("destination")),

@@ -224,6 +224,16 @@ def many_are_left(state: AxisState) -> Any:  # noqa: ANN401 - z3 has no types
     return z3.If(above, rest - height, rest + height) >= FAR - _ON_THE_WAY
 
 
+def goes_far(state: AxisState) -> Any:  # noqa: ANN401 - z3 has no types
+    """
+    Tell whether a run without an end that comes to rest first is to go far from there, and back.
+    """
+    away = state.of("destination") - state.of("end")
+    back = z3.If(state.is_in(REVERSE), away, -away)
+    turns = z3.And(state.is_in(ENDLESS), state.is_in(TURNING))
+    return z3.Implies(turns, z3.And(z3.UGE(back, FAR), z3.ULT(back, MOST_STEPS)))
+
+
 def of_way(state: AxisState) -> Claims:
     """
     Return what holds of *state* while the axis runs.
@@ -264,6 +274,7 @@ def of_way(state: AxisState) -> Claims:
         "there is room to come to rest": z3.UGE(rest, _wide32(ramp.height(row, state.last_level))),
         "at most 2**31 steps are left": state.left <= MOST_STEPS,
         "without an end, many steps are left": z3.Implies(state.is_endless, many_are_left(state)),
+        "a run that turns goes far": goes_far(state),
         "an interval with laps has a level of its own": z3.Implies(
             lapped, z3.And(state.count == 1, levels == 0)
         ),
