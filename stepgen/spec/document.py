@@ -4,6 +4,7 @@ The YAML of a spec: read once, with the place of every value.
 
 import re
 import stat
+from codecs import BOM_UTF8
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -137,12 +138,12 @@ def read_bytes(path: Path) -> bytes:
 
 
 def _read_text(path: Path) -> str:
-    raw = read_bytes(path)
+    raw = read_bytes(path).removeprefix(BOM_UTF8)  # a decoder that skips it counts from there
     try:
-        text = raw.decode("utf-8-sig")
+        text = raw.decode()
     except UnicodeDecodeError as error:
         reason = "is not UTF-8; save the file with that encoding"
-        before = raw[: error.start].decode("utf-8-sig")
+        before = raw[: error.start].decode()
         raise StepgenError.of(reason, place=_place(path, *_end(before))) from None
     reason = hidden_character(text)
     if reason:

@@ -79,6 +79,7 @@ def test_the_caret_stands_under_wide_characters_and_tabs(stepgen: Stepgen, tmp_p
         (b"", "a.yaml:1:1: error: holds no spec"),
         (b"- 1\n", "a.yaml:1:1: error: holds no spec"),
         (b"library: A\nboard: \xff\n", "a.yaml:2:8: error: is not UTF-8"),
+        (b"\xef\xbb\xbf# \xf3\n", "a.yaml:1:3: error: is not UTF-8"),
         (b"library: [A\n", "a.yaml:2:1: error: is no YAML"),
         (b"library: A\nlibrary: B\n", "a.yaml:2:1: error: the key"),
         (
