@@ -144,7 +144,7 @@ class Simulator:
 # Longer ones take too much of real time: a busy sketch runs at 16 to 27 MHz in avr8js, at 0.5 to
 # 0.8 MHz in yasimavr, which is run instruction by instruction; for simavr see `make benchmark`.
 _AVR8JS_CYCLES = 16_000_000
-_YASIMAVR_CYCLES = 3_200_000
+_YASIMAVR_CYCLES = 10_000_000
 
 # Interrupts that a mask holds back, and when they may come.
 _MASKING = {"sei-delay", "masked-flag"}

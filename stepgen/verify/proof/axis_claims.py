@@ -20,8 +20,9 @@ from stepgen.verify.proof.axis_state import (
 )
 from stepgen.verify.proof.numbers import BITS, wide
 
-TOO_FAST, RUNS, QUEUE_FULL, RANGE = -1, -5, -6, -7
-LIMIT, EMERGENCY = 1, 3
+TOO_FAST, RUNS, QUEUE_FULL, RANGE, HOMING, FAULT = -1, -5, -6, -7, -8, -9
+LIMIT, NOT_FOUND, EMERGENCY = 1, 2, 3
+APPROACHING, PARKING = 3, 4
 _FAR = 1 << 30
 
 Said = Iterator[tuple[str, Any]]
@@ -80,22 +81,52 @@ def _goes_to(way: AxisWay, destination: Any) -> Said:  # noqa: ANN401
     yield "nothing waits", after.queued == 0
 
 
+def _beyond(way: AxisWay, position: Any) -> Any:  # noqa: ANN401
+    """
+    Tell whether *position* lies outside of the range, if there is one.
+    """
+    if not (way.before.stops and way.before.stops.range):
+        return z3.BoolVal(val=False)
+    lowest, highest = way.before.stops.range
+    return z3.Or(position < lowest, position > highest)
+
+
+def _refusal(way: AxisWay, destination: Any) -> Any:  # noqa: ANN401
+    """
+    Return the code with which a move to *destination* is refused, or 0.
+    """
+    homing, fault = way.before.limit("Homing"), way.before.limit("Fault")
+    code = z3.If(_beyond(way, destination), _code(RANGE), _code(0))
+    if fault is not None:
+        code = z3.If(fault != 0, _code(FAULT), code)
+    return code if homing is None else z3.If(homing != 0, _code(HOMING), code)
+
+
+def _moves(way: AxisWay, destination: Any, *claims: tuple[str, Any]) -> Said:  # noqa: ANN401
+    """
+    Yield what must hold after a move to *destination*, and *claims*, unless it is refused.
+    """
+    refusal = _refusal(way, destination)
+    refused = refusal != 0
+    yield "what cannot be is refused", way.result == refusal
+    yield "then nothing changes", z3.Implies(refused, _same(way))
+    for says, claim in (*_goes_to(way, destination), *claims):
+        yield says, z3.Or(refused, claim)
+
+
 def move_to(way: AxisWay) -> Said:
     """
     Yield what must hold after ``...MoveTo``.
     """
-    yield from _goes_to(way, way.arguments[0])
-    yield "it ends", z3.Not(way.after.is_in(ENDLESS))
-    yield "it is never refused", way.result == 0
+    yield from _moves(way, way.arguments[0], ("it ends", z3.Not(way.after.is_in(ENDLESS))))
 
 
 def move(way: AxisWay) -> Said:
     """
     Yield what must hold after ``...Move``.
     """
-    yield from _goes_to(way, way.before.position + way.arguments[0])
-    yield "it ends", z3.Not(way.after.is_in(ENDLESS))
-    yield "it is never refused", way.result == 0
+    there = way.before.position + way.arguments[0]
+    yield from _moves(way, there, ("it ends", z3.Not(way.after.is_in(ENDLESS))))
 
 
 def run_forward(way: AxisWay) -> Said:
@@ -114,10 +145,43 @@ def run_backward(way: AxisWay) -> Said:
 
 def _runs(way: AxisWay, ahead: int) -> Said:
     after = way.after
-    yield from _goes_to(way, way.before.position + ahead)
-    yield "it runs without an end", z3.And(after.is_in(RUNNING), after.is_in(ENDLESS))
+    if way.before.stops and way.before.stops.range:
+        end = z3.BitVecVal(way.before.stops.range[ahead > 0], 32)
+        yield from _moves(way, end, ("it ends", z3.Not(after.is_in(ENDLESS))))
+        return
     there = after.is_in(REVERSE) == (ahead < 0)
-    yield "that way, or it turns", there != after.is_in(TURNING)
+    yield from _moves(
+        way,
+        way.before.position + ahead,
+        ("it runs without an end", z3.And(after.is_in(RUNNING), after.is_in(ENDLESS))),
+        ("that way, or it turns", there != after.is_in(TURNING)),
+    )
+
+
+def home(way: AxisWay) -> Said:
+    """
+    Yield what must hold after ``...Home``.
+    """
+    before, after = way.before, way.after
+    plan = way.before.stops.homing if way.before.stops else None
+    if plan is None:
+        raise ValueError(before.motor)
+    code = z3.If(before.is_in(RUNNING), _code(RUNS), _code(0))
+    code = z3.If(before.limit("Fault") != 0, _code(FAULT), code)
+    refused = code != 0
+    yield "it refuses with a fault, and while it runs", way.result == code
+    yield "then nothing changes", z3.Implies(refused, _same(way))
+    travel = plan.travel if plan.towards == "high" else -plan.travel
+    for says, claim in (
+        *_goes_to(way, before.position + travel),
+        ("it looks for the switch", after.limit("Homing") == 1),
+        ("no place is home", after.limit("Homed") == 0),
+        ("the sketch's speed is kept", after.limit("Cruise") == before.of("cruise")),
+        ("and its height", after.limit("Goal") == before.of("goal")),
+        ("it runs at homing's speed", after.of("cruise") == plan.fast.interval_256),
+        ("as high as that", after.of("goal") == plan.fast.height),
+    ):
+        yield says, z3.Or(refused, claim)
 
 
 def stop(way: AxisWay) -> Said:
@@ -208,9 +272,12 @@ def set_speed(way: AxisWay) -> Said:
     Yield what must hold after ``...SetSpeed``.
     """
     before, after = way.before, way.after
-    refused = z3.ULT(way.arguments[0], way.spec[0])
+    homing = before.limit("Homing")
+    code = _code(0) if homing is None else z3.If(homing != 0, _code(HOMING), _code(0))
+    code = z3.If(z3.ULT(way.arguments[0], way.spec[0]), _code(TOO_FAST), code)
+    refused = code != 0
     yield from _stays(way)
-    yield "it refuses what is too fast", way.result == z3.If(refused, _code(TOO_FAST), _code(0))
+    yield "it refuses what is too fast, and while it looks for home", way.result == code
     yield "then nothing changes", z3.Implies(refused, _same(way))
     taken = z3.And(after.of("cruise") == way.arguments[0], after.of("goal") == way.height)
     yield "else the interval holds, and how high it climbs for it", z3.Or(refused, taken)
@@ -249,6 +316,8 @@ def queue_move_to(way: AxisWay) -> Said:
     full = z3.And(running, before.queued == before.places)
     code = z3.If(full, _code(QUEUE_FULL), _code(0))
     code = z3.If(endless, _code(RUNS), z3.If(again, _code(0), code))
+    refusal = _refusal(way, destination)
+    code = z3.If(refusal != 0, refusal, code)
     yield from _stays(way)
     yield "it refuses behind a run without an end, and what has no place", way.result == code
     yield "then nothing changes", z3.Implies(z3.Or(code != 0, again), _same(way))
@@ -320,7 +389,7 @@ def set_current_position(way: AxisWay) -> Said:
     """
     Yield what must hold after ``...SetCurrentPosition``.
     """
-    yield from _only_at_rest(way)
+    yield from _only_at_rest(way, z3.If(_beyond(way, way.arguments[0]), _code(RANGE), _code(0)))
     named = z3.And(way.after.position == way.arguments[0], way.after.target == way.arguments[0])
     yield "the place has that number", z3.Or(way.result != 0, named)
 
@@ -330,15 +399,12 @@ def outputs(way: AxisWay) -> Said:
     Yield what must hold after ``...EnableOutputs`` and ``...DisableOutputs``.
     """
     yield from _stays(way)
-    yield from _only_at_rest(way)
+    yield from _only_at_rest(way, _code(0))
 
 
-def _only_at_rest(way: AxisWay) -> Said:
-    running = way.before.is_in(RUNNING)
-    fine = way.result == 0
-    if way.before.limit("Fault") is not None:
-        fine = z3.Or(fine, way.result == _code(RANGE))  # where that begins, the scenarios show
-    yield "it refuses while it runs", z3.If(running, way.result == _code(RUNS), fine)
+def _only_at_rest(way: AxisWay, code: Any) -> Said:  # noqa: ANN401
+    code = z3.If(way.before.is_in(RUNNING), _code(RUNS), code)
+    yield "it refuses while it runs", way.result == code
     yield "then nothing changes", z3.Implies(way.result != 0, _same(way))
 
 
@@ -357,9 +423,14 @@ def boundary(way: AxisWay) -> Said:
     steps = z3.And(before.is_in(RUNNING), before.of("lapsLeft") == 0)
     ahead = z3.If(before.is_in(REVERSE), z3.BitVecVal(-1, 32), z3.BitVecVal(1, 32))
     made = z3.If(steps, ahead, 0)
-    yield "the position changes by the step that is made", after.position == before.position + made
     over = z3.And(steps, before.left == 1)
-    onward = z3.Or(before.of("end") != before.of("destination"), before.queued != 0)
+    homing, homes = before.limit("Homing"), z3.BoolVal(val=False)
+    if homing is not None:
+        yield from _homes_on(way, over)
+        homes, renumbered = after.limit("Homing") != 0, z3.And(over, _finds(way))
+        made += z3.If(renumbered, _number(way) - before.limit("Contact"), 0)
+    yield "the position changes by the step that is made", after.position == before.position + made
+    onward = z3.Or(before.of("end") != before.of("destination"), before.queued != 0, homes)
     yield (
         "it rests after the last step",
         z3.Implies(
@@ -376,7 +447,49 @@ def boundary(way: AxisWay) -> Said:
             after.of("end") == before.of("destination"),
         ),
     )
-    yield "the target stays", z3.Or(before.is_in(ENDLESS), after.target == before.target)
+    stays = after.target == before.target
+    yield "the target stays", z3.Or(before.is_in(ENDLESS), homes, stays)
+
+
+def _finds(way: AxisWay) -> Any:  # noqa: ANN401
+    """
+    Tell whether homing has seen its switch for the second time.
+    """
+    before = way.before
+    return z3.And(before.limit("Homing") == APPROACHING, before.is_in(TOUCHED))
+
+
+def _number(way: AxisWay) -> int:
+    """
+    Return what homing calls the place of the switch.
+    """
+    stops = way.before.stops
+    if not (stops and stops.homing):
+        raise ValueError(way.before.motor)
+    return stops.homing.position
+
+
+def _homes_on(way: AxisWay, over: Any) -> Said:  # noqa: ANN401
+    """
+    Yield what holds of homing where a way may be *over*.
+    """
+    before, after = way.before, way.after
+    homing, then = before.limit("Homing"), after.limit("Homing")
+    looks, parks = homing & 1 != 0, homing == PARKING
+    ends = z3.And(over, homing != 0)
+    yield "homing goes on with its ways alone", z3.Or(ends, then == homing)
+    yield "to the next one, or it is over", z3.Implies(ends, z3.Or(then == homing + 1, then == 0))
+    seen = z3.Or(z3.Not(looks), before.is_in(TOUCHED))
+    yield "not without the switch", z3.Implies(z3.And(ends, z3.Not(seen)), then == 0)
+    lost = z3.And(ends, then == 0, z3.Not(parks))
+    fault = z3.If(lost, _code(NOT_FOUND), before.limit("Fault"))
+    yield "it tells that there was none", after.limit("Fault") == fault
+    homed = z3.If(z3.And(ends, parks), _one(1), before.limit("Homed"))
+    yield "at its end it is at home", after.limit("Homed") == homed
+    own = z3.And(
+        after.of("goal") == before.limit("Goal"), after.of("cruise") == before.limit("Cruise")
+    )
+    yield "then the sketch's speed counts", z3.Implies(z3.And(ends, then == 0), own)
 
 
 def _code(number: int) -> Any:  # noqa: ANN401
@@ -411,6 +524,7 @@ AXIS_CLAIMS: dict[str, Callable[[AxisWay], Said]] = {
     "ClearFault": clear_fault,
     "ReadFault": read_fault,
     "IsHomed": is_homed,
+    "Home": home,
     "limit": limit,
     "boundary": boundary,
 }

@@ -32,7 +32,7 @@ _BY_ITSELF = "the step interrupt by itself"
 _VECTOR = "__vector_"
 _ROW_BYTES = 4
 _MOVES = {
-    *("MoveTo", "Move", "QueueMoveTo", "RunForward", "RunBackward", "Stop", "SetSpeed"),
+    *("MoveTo", "Move", "QueueMoveTo", "RunForward", "RunBackward", "Stop", "SetSpeed", "Home"),
     "boundary",
     "limit",
 }
@@ -80,7 +80,8 @@ class AxisRun:
         """
         Take the ramp from the reference model, and show what is said of it.
         """
-        ladder, self._cruise_256 = self.library.axes[self.motor]
+        axis = self.library.axes[self.motor]
+        ladder, self._cruise_256, self._stops = axis.ladder, axis.cruise_256, axis.stops
         self._ramp = Ramp(ladder)
         self._goal = ladder.levels[ladder.goal(self._cruise_256)].height
         handler = self.library.functions[f"{_VECTOR}{self.motor}_boundary"]
@@ -142,8 +143,7 @@ class AxisRun:
         machine.unmasked = self._keeps
         before = self._state()
         self.paths.assume(self._ramp.is_level(self._height))
-        for height in (0, self._goal):
-            self.paths.assume(self._ramp.is_level(z3.BitVecVal(height, 16)))
+        self._assume_levels()
         if kind == "boundary":
             before = self._interrupted(before)
         if kind == "limit":
@@ -159,6 +159,19 @@ class AxisRun:
         spec = (self._cruise_256, self._goal)
         way = AxisWay(before, after, arguments, result, spec, self._height)
         self._show_all(AXIS_CLAIMS[kind](way))
+
+    def _assume_levels(self) -> None:
+        """
+        Say that the levels up to which the source has the motor climb are levels.
+        """
+        heights = [0, self._goal]
+        homing = self._stops and self._stops.homing
+        if homing:
+            heights += [homing.fast.height, homing.slow.height]
+        levels = {level.height for level in self._ramp.ladder.levels}
+        self._show("homing's speeds are levels", z3.BoolVal(val=levels.issuperset(heights)))
+        for height in heights:
+            self.paths.assume(self._ramp.is_level(z3.BitVecVal(height, 16)))
 
     def _split(self, before: AxisState, *, lengths: bool) -> AxisState:
         """
@@ -390,7 +403,9 @@ class AxisRun:
 
     def _state(self) -> AxisState:
         values = self._machine.memory.snapshot()
-        return AxisState(values, self.library.source, self.motor, self._ramp, self._named)
+        return AxisState(
+            values, self.library.source, self.motor, self._ramp, self._stops, self._named
+        )
 
     def _assume(self, state: AxisState) -> None:
         for claim in [*invariant(state).values(), *facts(state)]:

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 import z3
 
+from stepgen.plan.end_stops import EndStops
 from stepgen.verify.proof.memory import Place
 from stepgen.verify.proof.numbers import wide
 from stepgen.verify.proof.ramp import LAPPED_256, Ramp
@@ -34,6 +35,7 @@ class AxisState:
         source: What the library declares.
         motor: The motor's name.
         ramp: What it climbs on.
+        stops: Its limits, if it has such.
         named: Gives a term a name.
     """
 
@@ -41,6 +43,7 @@ class AxisState:
     source: Source
     motor: str
     ramp: Ramp
+    stops: EndStops | None = None
     named: Callable[[Any], Any] = lambda value: value
 
     def of(self, name: str) -> Any:  # noqa: ANN401 - z3 has no types
@@ -152,6 +155,13 @@ class AxisState:
         for place in range(self.places):
             value = z3.If(at == place, self.values[f"{self.motor}Queue", str(place)], value)
         return value
+
+    @property
+    def towards_low(self) -> bool:
+        """
+        Tell whether it looks for home at the low end.
+        """
+        return bool(self.stops and self.stops.homing and self.stops.homing.towards == "low")
 
     def limit(self, name: str) -> Any:  # noqa: ANN401
         """
@@ -307,12 +317,23 @@ def _of_homing(state: AxisState) -> Claims:
     homing, goal = state.limit("Homing"), state.limit("Goal")
     if homing is None:
         return {}
-    homes = homing != 0
-    on_a_way = z3.And(state.is_in(RUNNING), z3.Not(state.is_in(ENDLESS)), state.queued == 0)
+    homes, looks = homing != 0, homing & 1 != 0
+    no_end = state.is_in(ENDLESS | TURNING)
+    on_a_way = z3.And(state.is_in(RUNNING), z3.Not(no_end), state.queued == 0)
+    beyond = state.of("end") - state.limit("Contact")
+    if state.towards_low:
+        beyond = -beyond
+    near = z3.And(beyond != 0, z3.ULE(beyond, _ON_THE_WAY))
     return {
         "the speed that homing keeps is a level": state.ramp.is_level(goal),
         "homing is on a way with an end, and nothing waits": z3.Implies(homes, on_a_way),
         "homing has four ways": z3.ULE(homing, 4),
+        "it looks for the switch where that is": z3.Implies(
+            looks, state.is_in(REVERSE) == state.towards_low
+        ),
+        "it comes to rest behind the switch that it has seen": z3.Implies(
+            z3.And(looks, state.is_in(TOUCHED)), near
+        ),
     }
 
 

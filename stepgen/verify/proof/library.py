@@ -10,6 +10,7 @@ from typing import Any
 
 import z3
 
+from stepgen.plan.end_stops import EndStops
 from stepgen.plan.model import Plan
 from stepgen.reference.ladder import Ladder
 from stepgen.verify.ladders import ladder_of
@@ -36,6 +37,22 @@ LAP_TICKS = 1 << 14
 
 
 @dataclass(frozen=True)
+class Axis:
+    """
+    What is known of an axis.
+
+    Args:
+        ladder: What it climbs on.
+        cruise_256: The shortest interval of it, in 1/256 clocks.
+        stops: Its limits, if it has such.
+    """
+
+    ladder: Ladder
+    cruise_256: int
+    stops: EndStops | None
+
+
+@dataclass(frozen=True)
 class Library:
     """
     A library that can be proven.
@@ -49,7 +66,7 @@ class Library:
         units: What makes steps of turns and micrometres: the names of those.
         steps_per_mm: The steps in a millimetre of the motors that have metric units.
         timeouts: The command time-outs of the motors that have one, in milliseconds.
-        axes: Of the motors that are axes what they climb on, and the shortest interval of it.
+        axes: What is known of those motors that are axes.
     """
 
     source: Source
@@ -59,7 +76,7 @@ class Library:
     units: tuple[str, ...]
     steps_per_mm: dict[str, Fraction]
     timeouts: dict[str, int]
-    axes: dict[str, tuple[Ladder, int]]
+    axes: dict[str, Axis]
 
     @property
     def chooses(self) -> list[str]:
@@ -109,7 +126,7 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
             if motor.command_timeout_ms is not None
         },
         axes={
-            motor.name: (ladder, motor.motion.cruise_interval_256)
+            motor.name: Axis(ladder, motor.motion.cruise_interval_256, motor.end_stops)
             for motor in plan.motors
             if (ladder := ladder_of(motor.motion))
         },

@@ -87,6 +87,11 @@ MEANT = {
     "motorAim(motorPosition() + steps, 0);": _MODULO,
     "motorAim(motorPosition() + kFar, kEndless);": _MODULO,
     "motorAim(motorPosition() - kFar, kEndless);": _MODULO,
+    "return motorGo(motorPosition() + steps, 0);": _MODULO,
+    "motorAim(motorPosition() + kMotorTravel, 0);": _MODULO,
+    "motion.destination = motorContact + kMotorBackOff;": _MODULO,
+    "motion.destination -= 2 * kMotorBackOff;": _MODULO,
+    "motion.end += kMotorHome - motorContact;": _MODULO,
     "const uint32_t destination = target;": _MODULO,
     "motion.end = motion.mode & kReverse ? here - steps : here + steps;": _MODULO,
     "motion.end += motion.mode & kReverse ? -kFar : kFar;": _MODULO,
@@ -114,7 +119,7 @@ MEANT = {
 _NAMES = (
     *("Position", "ReadPosition", "Show", "EventClock", "Count", "Motion"),
     *("Left", "Target", "Queue", "Queued", "Place", "Aim", "Passed"),
-    *("Deadline", "Timeout"),
+    *("Deadline", "Timeout", "Go", "Contact"),
 )
 
 
@@ -136,7 +141,7 @@ def for_motor(text: str, motors: tuple[str, ...]) -> str:
     text = _METRES.sub(r"\1Position()) * 1UL", text)
     for motor in motors:
         title = motor[0].upper() + motor[1:]
-        text = re.sub(rf"\bk{title}(Lowest|Highest)\b", r"kMotor\1", text)
+        text = re.sub(rf"\bk{title}(Lowest|Highest|Travel|BackOff|Home)\b", r"kMotor\1", text)
         for after in _NAMES:
             text = re.sub(rf"\b{motor}{after}\b", f"motor{after}", text)
     text = _COUNTER.sub("TCNT1", _CHANNEL.sub(r"\g<1>1A", text))
