@@ -4,6 +4,7 @@ What each function of an axis must do, beyond keeping the invariant.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import z3
@@ -18,6 +19,7 @@ from stepgen.verify.proof.axis_state import (
     TURNING,
     AxisState,
 )
+from stepgen.verify.proof.claims import metric_position
 from stepgen.verify.proof.numbers import BITS, wide
 
 TOO_FAST, RUNS, QUEUE_FULL, RANGE, HOMING, FAULT = -1, -5, -6, -7, -8, -9
@@ -36,6 +38,7 @@ class AxisWay:
     Args:
         spec: The shortest interval of the spec, and how high the motor climbs for it.
         height: What ``heightFor`` returns for the interval that a call names.
+        per_mm: The steps in a millimetre, if there are units of length.
     """
 
     before: AxisState
@@ -44,6 +47,7 @@ class AxisWay:
     result: Any
     spec: tuple[int, int]
     height: Any
+    per_mm: Fraction | None
 
 
 def _stays(way: AxisWay) -> Said:
@@ -369,6 +373,16 @@ def distance_to_go(way: AxisWay) -> Said:
     yield "nothing changes", _same(way)
 
 
+def read_nanometres(way: AxisWay) -> Said:
+    """
+    Yield what must hold of the result of ``...ReadNanometres``, as far as 32 bits go.
+    """
+    if way.per_mm is None:
+        raise ValueError(way.before.motor)
+    yield metric_position(way.result, way.per_mm)
+    yield "nothing changes", _same(way)
+
+
 def is_running(way: AxisWay) -> Said:
     """
     Yield what must hold of the result of ``...IsRunning``.
@@ -515,6 +529,7 @@ AXIS_CLAIMS: dict[str, Callable[[AxisWay], Said]] = {
     "TargetPosition": target_position,
     "DistanceToGo": distance_to_go,
     "Position": position,
+    "ReadNanometres": read_nanometres,
     "IsRunning": is_running,
     "SetCurrentPosition": set_current_position,
     "EnableOutputs": outputs,

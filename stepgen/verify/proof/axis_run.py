@@ -20,6 +20,7 @@ from stepgen.verify.proof.axis_state import (
     facts,
     invariant,
 )
+from stepgen.verify.proof.claims import POSITION_READ
 from stepgen.verify.proof.integers import U16, integer
 from stepgen.verify.proof.library import Library
 from stepgen.verify.proof.machine import Machine
@@ -129,6 +130,8 @@ class AxisRun:
         known["slopeOf"] = self._slope
         if self.name != f"{self.motor}Passed":
             known[f"{self.motor}Passed"] = lambda: z3.BitVec("the moment has passed", 1)
+        if self.name == f"{self.motor}ReadNanometres":
+            known[f"{self.motor}CurrentPosition"] = lambda: POSITION_READ
         self._height = z3.BitVec("the height for the interval", 16)
         known["heightFor"] = lambda *_: self._height
 
@@ -157,7 +160,8 @@ class AxisRun:
         result = machine.call(self.name, *arguments)
         after = self._keeps()
         spec = (self._cruise_256, self._goal)
-        way = AxisWay(before, after, arguments, result, spec, self._height)
+        per_mm = self.library.steps_per_mm.get(self.motor)
+        way = AxisWay(before, after, arguments, result, spec, self._height, per_mm)
         self._show_all(AXIS_CLAIMS[kind](way))
 
     def _assume_levels(self) -> None:

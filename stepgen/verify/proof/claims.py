@@ -289,19 +289,24 @@ def read_status(way: Way) -> Iterator[tuple[str, Any]]:
     yield from position(way, NO_STEP)
 
 
-def longest_way(per_mm: Fraction) -> int:
+def is_way(micrometres: Any, per_mm: Fraction, *, signed: bool) -> Any:  # noqa: ANN401
     """
-    Return the micrometres up to which the steps of a way fit 32 bits.
+    Tell whether the steps of so many *micrometres* fit 32 bits; *signed*: either way.
     """
-    return min(0xFFFF_FFFF, int(0xFFFF_FFFF * 1000 / per_mm))
+    most = (1 << 31 if signed else 1 << 32) - 1
+    longest = min(most, int(most * 1000 / per_mm))
+    if not signed:
+        return z3.ULE(micrometres, longest)
+    return z3.And(micrometres <= longest, micrometres >= -longest)
 
 
-def steps_of(micrometres: Any, steps: Any, per_mm: Fraction) -> Any:  # noqa: ANN401
+def steps_of(micrometres: Any, steps: Any, per_mm: Fraction, *, signed: bool) -> Any:  # noqa: ANN401
     """
-    Tell whether *steps* are those of *micrometres*, rounded.
+    Tell whether *steps* are those of *micrometres*, rounded; *signed*: either way.
     """
     per_um = per_mm / 1000
-    way, made = (z3.ZeroExt(_EXACT, value) for value in (micrometres, steps))
+    extend = z3.SignExt if signed else z3.ZeroExt
+    way, made = (extend(_EXACT, value) for value in (micrometres, steps))
     off = 2 * (made * per_um.denominator - way * per_um.numerator)
     return z3.And(off <= per_um.denominator, off >= -per_um.denominator)
 
@@ -310,16 +315,23 @@ def read_nanometres(way: Way) -> Iterator[tuple[str, Any]]:
     """
     Yield what must hold of the result of ``...ReadNanometres``, as far as 32 bits go.
     """
-    nanometres = 1_000_000 / way.library.steps_per_mm[way.before.motor]
-    at, read = (z3.SignExt(_EXACT, value) for value in (POSITION_READ, way.result))
+    yield metric_position(way.result, way.library.steps_per_mm[way.before.motor])
+    yield from position(way, NO_STEP)
+
+
+def metric_position(result: Any, per_mm: Fraction) -> tuple[str, Any]:  # noqa: ANN401
+    """
+    Return what must hold of *result*, the position `POSITION_READ` in nanometres.
+    """
+    nanometres = 1_000_000 / per_mm
+    at, read = (z3.SignExt(_EXACT, value) for value in (POSITION_READ, result))
     exact = at * nanometres.numerator
     off = exact - read * nanometres.denominator
     end = nanometres.denominator << 31
     cut_off = z3.If(at < 0, -off, off)
     right = z3.And(cut_off >= 0, cut_off < nanometres.denominator)
     inside = z3.And(exact < end, exact >= -end)
-    yield "the position in nanometres, cut off", z3.Implies(inside, right)
-    yield from position(way, NO_STEP)
+    return "the position in nanometres, cut off", z3.Implies(inside, right)
 
 
 def read_missed(way: Way) -> Iterator[tuple[str, Any]]:

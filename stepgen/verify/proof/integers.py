@@ -27,7 +27,7 @@ class Integer:
 
 BOOL = Integer(1)
 U8, U16, U24, U32, U64 = Integer(8), Integer(16), Integer(24), Integer(32), Integer(64)
-I8, I16, I32 = Integer(8, signed=True), Integer(16, signed=True), Integer(32, signed=True)
+I8, I16, I32, I64 = (Integer(bits, signed=True) for bits in (8, 16, 32, 64))
 
 _NAMES = {
     "bool": BOOL,
@@ -47,6 +47,8 @@ _NAMES = {
     "int32_t": I32,
     "long int": I32,
     "signed long": I32,
+    "int64_t": I64,
+    "long long int": I64,
     "uint64_t": U64,
     "long long unsigned int": U64,
 }

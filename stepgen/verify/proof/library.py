@@ -24,7 +24,7 @@ from stepgen.verify.recipes import IDE_VERSION, Target, board_properties, platfo
 
 _CONSTANT = re.compile(r"^constexpr \w+ (\w+) = (\w+?)U?L*;", re.MULTILINE)
 _STEPS_FOR = re.compile(
-    r"^constexpr uint32_t (\w+StepsFor(?:Turns|Micrometres))\((\w+) \w+\)", re.MULTILINE
+    r"^constexpr (u?int32_t) (\w+StepsFor(?:Turns|Micrometres))\((\w+) \w+\)", re.MULTILINE
 )
 _CHOOSE = ("chooseSetting", "chooseInterval", "chooseSpan")
 
@@ -100,9 +100,9 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
     (path,) = (folder / "src").glob("*.cpp")
     header = path.with_suffix(".h").read_text(encoding="utf-8")
     constants = dict(_CONSTANT.findall(header))
-    units = dict(_STEPS_FOR.findall(header))
+    units = _STEPS_FOR.findall(header)
     unit = scratch / path.name
-    calls = "".join(_call(name, kind) for name, kind in units.items())
+    calls = "".join(_call(*unit) for unit in units)
     unit.write_text(path.read_text(encoding="utf-8") + calls, "utf-8")
     source, board = read_source(unit), plan.board
     core, variant = platform_dir(), board_properties(Target.from_fqbn(board.fqbn))["build.variant"]
@@ -114,11 +114,11 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
         functions=functions(unit, compiler, flags),
         min_top=int(constants.get("MOTOR_MIN_TOP", 0)),
         max_top=int(constants.get("MOTOR_MAX_TOP", 0)),
-        units=tuple(units),
+        units=tuple(name for _, name, _ in units),
         steps_per_mm={
             motor.name: motor.steps_per_mm
             for motor in plan.motors
-            if motor.steps_per_mm is not None and motor.motion.ladder is None
+            if motor.steps_per_mm is not None
         },
         timeouts={
             motor.name: motor.command_timeout_ms
@@ -133,8 +133,8 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
     )
 
 
-def _call(name: str, kind: str) -> str:
-    return f"\nuint32_t proof{name}({kind} amount) {{ return {name}(amount); }}\n"
+def _call(result: str, name: str, kind: str) -> str:
+    return f"\n{result} proof{name}({kind} amount) {{ return {name}(amount); }}\n"
 
 
 class Chosen:

@@ -10,7 +10,7 @@ from typing import Any
 import z3
 
 from stepgen.verify.proof.axis_run import AxisRun, axis_entries
-from stepgen.verify.proof.claims import CLAIMS, POSITION_READ, choice, longest_way, steps_of
+from stepgen.verify.proof.claims import CLAIMS, POSITION_READ, choice, is_way, steps_of
 from stepgen.verify.proof.integers import U16, integer
 from stepgen.verify.proof.library import Chosen, Library
 from stepgen.verify.proof.machine import Machine
@@ -68,7 +68,12 @@ def shared(library: Library) -> list[str]:
     """
     Return the functions that have no motor's state.
     """
-    speeds = [f"{motor}TimerCalcNanometresPerSecond" for motor in library.steps_per_mm]
+    speeds = [
+        name
+        for motor in library.steps_per_mm
+        for kind in ("TimerCalc", "IntervalFor")
+        if (name := f"{motor}{kind}NanometresPerSecond") in library.functions
+    ]
     steps = [f"proof{name}" for name in library.units]
     rates = [name for name in ("motorTimerCalcPerSecond",) if name in library.functions]
     return [*library.chooses, *rates, *speeds, *steps]
@@ -128,12 +133,13 @@ class _Run:
             self.paths.assume(z3.UGE(period, self.library.min_top))
             self.paths.assume(z3.ULE(period, self.library.max_top))
         motor = self.name.removeprefix("proof").removesuffix("StepsForMicrometres")
-        per_mm = self.library.steps_per_mm.get(motor)
+        per_mm, signed = self.library.steps_per_mm.get(motor), motor in self.library.axes
         if per_mm is not None:
-            self.paths.assume(z3.ULE(arguments[0], longest_way(per_mm)))
+            self.paths.assume(is_way(arguments[0], per_mm, signed=signed))
         result = self._machine.call(self.name, *arguments)
         if per_mm is not None:
-            self._show("the steps are the way's, rounded", steps_of(arguments[0], result, per_mm))
+            rounded = steps_of(arguments[0], result, per_mm, signed=signed)
+            self._show("the steps are the way's, rounded", rounded)
         if choose:
             for says, claim in choice(self.library, self.paths, arguments[0], result):
                 self._show(says, claim)
