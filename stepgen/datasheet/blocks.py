@@ -5,6 +5,7 @@ What is wired to the board in the picture of the wiring: drivers, limit switches
 from dataclasses import dataclass, field
 
 from stepgen.datasheet.drivers import block_height, driver_of
+from stepgen.datasheet.scene import COLORS
 from stepgen.datasheet.switches import switches_height
 from stepgen.devices.outlines import GROUND, Outline, Place
 from stepgen.plan.end_stops import EndSwitch
@@ -12,7 +13,6 @@ from stepgen.plan.model import MotorPlan, Plan
 from stepgen.plan.wires import Wire
 
 _SIDES = ("up", "right", "down")
-_COLORS = 6
 
 
 @dataclass
@@ -80,7 +80,7 @@ def _driver_block(motor: MotorPlan, outline: Outline) -> Block:
     plugged = driver_of(motor).is_plugged
     css = " plugged" if plugged else ""
     wires = [
-        _wire(motor, wire, outline, f"w{index % _COLORS + 1}{css}")
+        _wire(motor, wire, outline, f"w{index % COLORS + 1}{css}")
         for index, wire in enumerate(motor.drive.every_wire)
     ]
     return Block(motor, wires if plugged else [*wires, _ground(motor, outline, "ground")])
@@ -89,7 +89,7 @@ def _driver_block(motor: MotorPlan, outline: Outline) -> Block:
 def _switch_block(motor: MotorPlan, outline: Outline) -> Block:
     first = len(motor.drive.every_wire)
     wires = [
-        _wire(motor, switch, outline, f"w{(first + index) % _COLORS + 1}")
+        _wire(motor, switch, outline, f"w{(first + index) % COLORS + 1}")
         for index, switch in enumerate(motor.end_switches)
     ]
     wires.append(_ground(motor, outline, "ground of the switches"))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import floor, log10
 
+from stepgen.datasheet.names import together
 from stepgen.datasheet.scene import Scene, at
 from stepgen.errors import StepgenError
 from stepgen.library.example_speeds import example_speed_sps
@@ -18,8 +19,8 @@ from stepgen.plan.rates import Clock
 from stepgen.plan.speed_wishes import Wish, plan_wish
 from stepgen.units import MILLISECONDS_PER_SECOND
 
-_WIDTH, _HEIGHT = 400, 168
-_LEFT, _RIGHT, _TOP, _BOTTOM = 48, 14, 18, 34
+_WIDTH, _HEIGHT = 340, 90
+_LEFT, _RIGHT, _TOP, _BOTTOM = 46, 12, 8, 18
 _STEPS_OF_AN_EXAMPLE = 200
 _START_FRACTION = 20
 _RAMP_PERIODS = 40
@@ -76,7 +77,7 @@ def motion_charts(plan: Plan) -> Iterator[Chart]:
             for curve in _curves(motor, plan):
                 key = (curve.name, curve.corners)
                 alike.setdefault(key, (curve, []))[1].append(motor.name)
-        names = [motor.name for motor in motors]
+        names, called = [motor.name for motor in motors], together(motors, plan)
         curves = [
             replace(
                 curve,
@@ -85,8 +86,14 @@ def motion_charts(plan: Plan) -> Iterator[Chart]:
             )
             for number, (curve, having) in enumerate(alike.values())
         ]
-        scene = _draw(f"Speed of {listed(names)} against time", curves)
-        yield Chart(names[0], f"{listed(names)}: speed", scene, tuple(curves), note)
+        scene = _draw(f"Speed of {called} against time", curves)
+        yield Chart(
+            names[0],
+            f"{called}: speed in steps/s against time in s",
+            scene,
+            tuple(curves),
+            note,
+        )
 
 
 def _curves(motor: MotorPlan, plan: Plan) -> tuple[Curve, ...]:
@@ -192,15 +199,13 @@ def _draw(title: str, curves: Sequence[Curve]) -> Scene:
     right, floor_y = _WIDTH - _RIGHT, y_of(bottom)
     for seconds in ticks(span_s):
         scene.stroke(f"M{at(x_of(seconds))} {_TOP}V{at(floor_y)}", "grid")
-        scene.write(x_of(seconds), floor_y + 12, f"{seconds:.6g}", "axis-text middle")
+        scene.write(x_of(seconds), floor_y + 12.5, f"{seconds:.6g}", "axis-text middle")
     for speed in _both_ways(top, bottom):
         scene.stroke(f"M{_LEFT} {at(y_of(speed))}H{right}", "zero" if speed == 0 else "grid")
-        scene.write(_LEFT - 5, y_of(speed) + 3, f"{speed:.6g}", "axis-text end")
+        scene.write(_LEFT - 5, y_of(speed) + 3.4, f"{speed:.6g}", "axis-text end")
     for curve in curves:
         path = _line if curve.sloped else _staircase
         scene.stroke(path(curve.corners, x_of, y_of), f"curve {curve.css}", curve.name)
-    scene.write(_LEFT - 5, _TOP - 6, "steps/s", "axis-text end")
-    scene.write((_LEFT + right) / 2, _HEIGHT - 4, "time since the call, s", "axis-text middle")
     return scene
 
 
@@ -226,14 +231,19 @@ def _line(
 
 
 def _both_ways(top: float, bottom: float) -> list[float]:
-    up = ticks(max(top, -bottom))
+    """
+    Return speeds for the axis, below zero too: few, since there is little room.
+    """
+    up = ticks(max(top, -bottom), least=1 if bottom < 0 else 2)
     return sorted({*up, *(-speed for speed in up if speed <= -bottom)} - {-0.0} | {0})
 
 
-def ticks(largest: float) -> list[float]:
+def ticks(largest: float, least: int = 4) -> list[float]:
     """
-    Return 0 and its multiples of 1, 2 or 5 times a power of ten up to *largest*: 4 to 11 of them.
+    Return 0 and its multiples of 1, 2 or 5 times a power of ten up to *largest*: *least* or more.
+
+    There are at most two and a half times as many.
     """
-    power = 10 ** floor(log10(largest / 4))
-    step = max(power * factor for factor in (1, 2, 5) if power * factor <= largest / 4)
+    power = 10 ** floor(log10(largest / least))
+    step = max(power * factor for factor in (1, 2, 5) if power * factor <= largest / least)
     return [count * step for count in range(int(largest / step) + 1)]

@@ -2,22 +2,22 @@
 What drivers look like in the picture of the wiring: an entry for each kind with looks of its own.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from stepgen.datasheet.scene import Scene, at
 from stepgen.plan.model import MotorPlan
 
-WIDTH = 112
-ROW = 15
-TITLE_HEIGHT = 24
-_NOTE_HEIGHT = 30
-_LEAD = 30
+WIDTH = 104
+ROW = 12
+TITLE_HEIGHT = 25
+_NOTE_HEIGHT = 18
+_LEAD = 20
 _BUMPS = 3
-_MOTOR_RADIUS = 24
-MOTOR_WIDTH = 135
-_LEAST_ROWS = 5
-_MARGIN = 13
+_MOTOR_RADIUS = 19
+MOTOR_WIDTH = 98
+_LEAST_ROWS = 4
+_MARGIN = 10
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Driver:
 
 
 _DRIVERS = {
-    "motor-shield": Driver(note="plugged on; motor supply: Vin and GND", is_plugged=True),
+    "motor-shield": Driver(note="plugged on; motor supply: Vin, GND", is_plugged=True),
     # Coils A to D follow each other, so A and C, B and D are the halves of one winding.
     "four-wire": Driver(
         outputs=("OUT1", "OUT3", "OUT2", "OUT4"),
@@ -74,18 +74,26 @@ def input_y(top: float, index: int) -> float:
     return top + TITLE_HEIGHT + _MARGIN + index * ROW
 
 
+def input_labels(motor: MotorPlan, signals: Iterable[str]) -> list[str]:
+    """
+    Return what the inputs of *signals* are called at the driver of *motor*.
+    """
+    inputs = driver_of(motor).inputs
+    return [inputs.get(signal, signal) for signal in signals]
+
+
 def draw_driver(scene: Scene, motor: MotorPlan, x: float, top: float, labels: list[str]) -> None:
     """
     Draw the driver of *motor* with the inputs *labels*, and the motor on its right.
+
+    What it is called stands above, in the first ``TITLE_HEIGHT`` below *top*, and is not drawn.
     """
     driver = driver_of(motor)
     height = _box_height(len(labels))
-    scene.write(x, top + 8, f"{motor.name}: timer {motor.timing.timer.number}", "strong")
-    scene.write(x, top + 18, motor.drive.title, "quiet")
     scene.box(x, top + TITLE_HEIGHT, WIDTH, height, "driver")
     for index, label in enumerate(labels):
-        scene.write(x + 5, input_y(top, index) + 3, label, "on-driver")
-    scene.write(x, top + TITLE_HEIGHT + height + 11, driver.note, "quiet")
+        scene.write(x + 5, input_y(top, index) + 3.4, label, "on-driver")
+    scene.write(x, top + TITLE_HEIGHT + height + 12, driver.note, "quiet")
     _draw_motor(scene, motor, driver, x + WIDTH, top + TITLE_HEIGHT, height)
 
 
@@ -107,8 +115,8 @@ def _draw_motor(
         scene.stroke(f"{lead}{bumps}h{-_LEAD}", "coil", f"motor {motor.name}, winding from {ends}")
     for row, label in zip(rows, driver.outputs, strict=True):
         scene.dot(x, row, 2.2, "terminal")
-        scene.write(x - 6, row + 3, label, "on-driver end")
-    tap = x + _LEAD + r + 9
+        scene.write(x - 6, row + 3.4, label, "on-driver end")
+    tap = x + _LEAD + r + 8
     if driver.is_tapped:
         middles = [(rows[0] + rows[1]) / 2, (rows[2] + rows[3]) / 2]
         away = at(tap - x - _LEAD - r)
@@ -118,11 +126,7 @@ def _draw_motor(
             "coil",
             f"motor {motor.name}, middle of both windings to the motor supply",
         )
-        scene.write(tap - 3, rows[0] - 8, "+ supply", "quiet")
+        scene.write(tap - 3, rows[0] - 7, "+ supply", "quiet")
     center = (tap + 12 + _MOTOR_RADIUS, top + height / 2)
     scene.dot(*center, _MOTOR_RADIUS, "motor", f"motor {motor.name}")
     scene.write(center[0], center[1] + 5, "M", "on-motor")
-    steps = motor.steps_per_turn
-    if steps is not None:
-        turn = f"{float(steps):.6g} steps/turn"
-        scene.write(x + MOTOR_WIDTH - 4, top + height + 11, turn, "quiet end")

@@ -4,6 +4,9 @@ A drawing as finished SVG geometry: the template prints it and decides nothing.
 
 from dataclasses import dataclass, field
 
+COLORS = 6
+"""Of wires and tags: the classes ``w1`` and so on of the style."""
+
 
 @dataclass(frozen=True)
 class Stroke:
@@ -46,6 +49,11 @@ class Label:
 class Scene:
     """
     A drawing: first its strokes are drawn, then its dots, then its labels.
+
+    Its unit is a pixel, 1/96 inch, when it is printed, so that its type has the size that it says.
+
+    Args:
+        note: What stands below it, or "".
     """
 
     title: str
@@ -55,6 +63,7 @@ class Scene:
     strokes: list[Stroke] = field(default_factory=list)
     dots: list[Dot] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
+    note: str = ""
 
     def stroke(self, d: str, css: str, title: str = "") -> None:
         """

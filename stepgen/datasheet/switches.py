@@ -10,11 +10,11 @@ from stepgen.devices.outlines import GROUND
 from stepgen.plan.end_stops import EndSwitch
 from stepgen.plan.model import MotorPlan
 
-_MARGIN = 13
-_NOTE_HEIGHT = 14
-_CONTACT, _GAP = WIDTH - 46, 18  # where its first contact is, and how far the second one
+_MARGIN = 10
+_NOTE_HEIGHT = 12
+_CONTACT, _GAP = WIDTH - 44, 16  # where its first contact is, and how far the second one
 _RAIL = WIDTH - 12  # what all of them lead to
-_OPEN = 8  # how far the lever of an open switch is from the contact
+_OPEN = 7  # how far the lever of an open switch is from the contact
 
 
 def switches_height(rows: int) -> float:
@@ -29,22 +29,22 @@ def draw_switches(
 ) -> None:
     """
     Draw the switches of *motor* as they are in mid-way, in the order of *signals*, and ground.
+
+    What they are called stands above, in the first ``TITLE_HEIGHT`` below *top*, and is not drawn.
     """
     height = switches_height(len(signals)) - TITLE_HEIGHT - _NOTE_HEIGHT
-    scene.write(x, top + 8, f"{motor.name}: ends", "strong")
-    scene.write(x, top + 18, "limit switches before they are pressed", "quiet")
     scene.box(x, top + TITLE_HEIGHT, WIDTH, height, "driver switches")
     rows = {signal: input_y(top, index) for index, signal in enumerate(signals)}
     for signal, y in rows.items():
-        scene.write(x + 5, y + 3, signal, "on-driver")
+        scene.write(x + 5, y + 3.4, signal, "on-driver")
     grounded = [switch for switch in motor.end_switches if switch.pull_up]
     for switch in motor.end_switches:
         if switch.pull_up:
             _draw_switch(scene, motor, switch, x, rows[switch.signal])
         else:
-            scene.write(x + _RAIL - 4, rows[switch.signal] + 3, "sensor", "on-driver end")
+            scene.write(x + _RAIL - 4, rows[switch.signal] + 3.4, "sensor", "on-driver end")
         remark = f"{switch.level} at the end"
-        scene.write(x + WIDTH + 6, rows[switch.signal] + 3, remark, "quiet")
+        scene.write(x + WIDTH + 6, rows[switch.signal] + 3.4, remark, "quiet")
     if grounded:
         ends = [rows[GROUND], *(rows[switch.signal] for switch in grounded)]
         scene.stroke(
@@ -63,7 +63,7 @@ def _draw_switch(scene: Scene, motor: MotorPlan, switch: EndSwitch, x: float, y:
     way = "opens" if switch.active_high else "closes"
     lever = 0 if switch.active_high else -_OPEN
     scene.stroke(
-        f"M{at(x + 45)} {at(y)}H{at(start)}l{_GAP} {lever}M{at(end)} {at(y)}H{at(x + _RAIL)}",
+        f"M{at(x + 50)} {at(y)}H{at(start)}l{_GAP} {lever}M{at(end)} {at(y)}H{at(x + _RAIL)}",
         "coil",
         f"motor {motor.name}, switch of the {switch.signal}: {way} there",
     )

@@ -1,190 +1,22 @@
 """
-The picture of the wiring: the board seen from above, its pins, drivers and motors.
-
-Each wire goes from its pin straight off the board into a lane of its own, along it to a column in
-front of the drivers, and from there to its input. Inputs are in the order in which wires
-arrive, so that those of one side of the board never cross.
+The picture of the wiring: with every wire drawn if that fits on paper, else with tags on the pins.
 """
 
-from stepgen.datasheet.blocks import Block, Lead, blocks_of
-from stepgen.datasheet.drivers import (
-    MOTOR_WIDTH,
-    ROW,
-    TITLE_HEIGHT,
-    WIDTH,
-    draw_driver,
-    driver_of,
-    input_y,
-)
-from stepgen.datasheet.scene import Scene, at
-from stepgen.datasheet.switches import draw_switches
-from stepgen.devices.outlines import PITCH_MIL, Outline, Place, outline_of
+from stepgen.datasheet.routed import routed_scene
+from stepgen.datasheet.scene import Scene
+from stepgen.datasheet.tagged import WIDEST, tagged_scene
 from stepgen.plan.model import Plan
 
-_LARGEST_BOARD = (400, 260)
-_LARGEST_SCALE = 0.2  # units per mil
-_LEFT = 38  # room for connectors
-_LANE, _COLUMN = 7, 8
-_NAME_ROOM = 34  # in front of a driver, for the pins' names
-_GAP = 10
+_HIGHEST = 560
 
 
 def wiring_scene(plan: Plan) -> Scene:
     """
-    Return the picture of all wires of *plan*.
+    Return the picture of the wiring of *plan*, at most as wide as paper.
 
     Raises:
         KeyError: The board, or one of the pins, is on no outline.
     """
-    outline = outline_of(plan.board)
-    scale = _scale(outline)
-    blocks = blocks_of(plan, outline)
-    wires = [wire for block in blocks for wire in block.wires]
-    width, height = outline.width * scale, outline.height * scale
-    ups = _lanes(blocks, "up")
-    top = _GAP + max(len(ups) * _LANE, TITLE_HEIGHT) + _GAP
-    bottom = _stack(blocks, top, height)
-    for index, wire in enumerate(ups):
-        wire.lane = top - _GAP - (len(ups) - 1 - index) * _LANE
-    downs = _lanes(blocks, "down")
-    for index, wire in enumerate(downs):
-        wire.lane = bottom + _GAP + (len(downs) - 1 - index) * _LANE
-    for wire in wires:
-        wire.x, wire.y = _LEFT + wire.place.x * scale, top + wire.place.y * scale
-    columns = _columns(ups, downs, [wire for wire in wires if wire.side == "right"], scale)
-    driver_x = _LEFT + width + _GAP + columns * _COLUMN + _NAME_ROOM
-    scene = Scene(
-        title=f"Wiring on the {plan.board.title}",
-        description="; ".join(wire.title for wire in wires),
-        width=at(driver_x + WIDTH + MOTOR_WIDTH + _GAP),
-        height=at(bottom + _GAP + len(downs) * _LANE + 4),
-    )
-    _draw_board(scene, plan, outline, scale, top)
-    for place in outline.places():
-        _draw_pin(scene, place, scale, top, is_used=place in {wire.place for wire in wires})
-    for wire in wires:
-        scene.stroke(_path(wire, driver_x, scale), wire.css, wire.title)
-        scene.dot(wire.x, wire.y, 3, f"pin {wire.css}", wire.title)
-        scene.write(driver_x - 4, wire.end - 2.5, wire.place.label, "pin-name end")
-    for block in blocks:
-        _draw_block(scene, block, driver_x)
-    return scene
-
-
-def _draw_block(scene: Scene, block: Block, x: float) -> None:
-    signals = [wire.signal for wire in block.wires]
-    if block.has_switches:
-        draw_switches(scene, block.motor, x, block.top, signals)
-    else:
-        inputs = driver_of(block.motor).inputs
-        names = [inputs.get(signal, signal) for signal in signals]
-        draw_driver(scene, block.motor, x, block.top, names)
-
-
-def _scale(outline: Outline) -> float:
-    widest, highest = _LARGEST_BOARD
-    return min(_LARGEST_SCALE, widest / outline.width, highest / outline.height)
-
-
-def _lanes(blocks: list[Block], side: str) -> list[Lead]:
-    """
-    Return the wires of *side*, the one whose lane is farthest from the board first.
-    """
-    ordered = blocks if side == "up" else list(reversed(blocks))
-    return [
-        wire
-        for block in ordered
-        for wire in (block.wires if side == "up" else reversed(block.wires))
-        if wire.side == side
-    ]
-
-
-def _stack(blocks: list[Block], top: float, height: float) -> float:
-    """
-    Place the drivers one below the other, beside the board; return where the lower of both ends.
-    """
-    needed = sum(block.height for block in blocks)
-    y = top - TITLE_HEIGHT + max(0.0, (height + TITLE_HEIGHT - needed) / 2)
-    for block in blocks:
-        block.top = y
-        for index, wire in enumerate(block.wires):
-            wire.end = input_y(y, index)
-        y += block.height
-    return max(top + height, y - ROW)
-
-
-def _columns(ups: list[Lead], downs: list[Lead], rights: list[Lead], scale: float) -> int:
-    """
-    Give each wire a column, counted from the drivers, in which no other wire is at its height.
-    """
-    taken: list[list[tuple[float, float]]] = []
-
-    def place(wire: Lead, first: int) -> int:
-        start = wire.lane or _leaving_y(wire, scale)
-        low, high = sorted((start, wire.end))
-        column = first
-        while column < len(taken) and any(a < high and low < b for a, b in taken[column]):
-            column += 1
-        if column == len(taken):
-            taken.append([])
-        taken[column].append((low - 2, high + 2))
-        wire.column = column
-        return column + 1
-
-    for group in (ups, downs):
-        free = 0
-        for wire in group:
-            free = place(wire, free)
-    free = len(taken)
-    for wire in rights:
-        free = place(wire, free)
-    return len(taken)
-
-
-def _leaving_y(wire: Lead, scale: float) -> float:
-    inner = wire.place.header.is_inner
-    return wire.y + (PITCH_MIL * scale / 2 if inner else 0)
-
-
-def _path(wire: Lead, driver_x: float, scale: float) -> str:
-    """
-    Return the way of *wire*; from an inner row it goes between two pins of the outer one.
-    """
-    column = driver_x - _NAME_ROOM - wire.column * _COLUMN
-    start = f"M{at(wire.x)} {at(wire.y)}"
-    if wire.side == "right":
-        off = f"V{at(_leaving_y(wire, scale))}"
-    else:
-        aside = PITCH_MIL * scale / 2 if wire.place.header.is_inner else 0
-        off = f"H{at(wire.x + aside)}V{at(wire.lane)}"
-    return f"{start}{off}H{at(column)}V{at(wire.end)}H{at(driver_x)}"
-
-
-def _draw_board(scene: Scene, plan: Plan, outline: Outline, scale: float, top: float) -> None:
-    corners = [(_LEFT + x * scale, top + y * scale) for x, y in outline.corners]
-    edge = "L".join(f"{at(x)} {at(y)}" for x, y in corners)
-    scene.stroke(f"M{edge}z", "board", plan.board.title)
-    for hole in outline.holes:
-        scene.dot(_LEFT + hole[0] * scale, top + hole[1] * scale, 63 * scale, "hole")
-    for part in outline.parts:
-        left, upper = _LEFT + part.x * scale, top + part.y * scale
-        scene.box(left, upper, part.width * scale, part.height * scale, "part")
-        name = plan.board.mcu.title if part.name == "chip" else part.name
-        middle = (left + part.width * scale / 2, upper + part.height * scale / 2 + 3)
-        scene.write(*middle, name, "on-part middle")
-    x, y = outline.title
-    scene.write(_LEFT + x * scale, top + y * scale, plan.board.title, "board-name middle")
-
-
-def _draw_pin(scene: Scene, place: Place, scale: float, top: float, *, is_used: bool) -> None:
-    x, y = _LEFT + place.x * scale, top + place.y * scale
-    scene.dot(x, y, 2, "hole")
-    css = "used" if is_used else "free"
-    if place.header.side == "up":
-        scene.write(x + 2.5, y + 4, place.label, f"{css} end", -90)
-    elif place.header.side == "down":
-        scene.write(x + 2.5, y - 4, place.label, css, -90)
-    elif place.header.is_inner:
-        scene.write(x - 5, y + 2.5, place.label, f"{css} end")
-    else:
-        scene.write(x + 5, y + 2.5, place.label, css)
+    scene = routed_scene(plan)
+    fits = float(scene.width) <= WIDEST and float(scene.height) <= _HIGHEST
+    return scene if fits else tagged_scene(plan)

@@ -296,19 +296,26 @@ def takes(plan: Plan) -> tuple[str, ...]:
     rows.extend(f"{listed(names)}: {rule}" for rule, names in under.items() if names[1:])
     rows.extend(sharing_rules(plan))
     rows.extend(_port_rules(plan))
-    rows.extend(_inputs(motor) for motor in plan.motors if motor.end_switches)
+    rows.append(_inputs([motor for motor in plan.motors if motor.end_switches]))
     rows.append("`GPIOR0`, `GPIOR1` and `GPIOR2`, which the Arduino core does not use.")
     return tuple(dict.fromkeys(filter(None, rows)))
 
 
-def _inputs(motor: MotorPlan) -> str:
+def _inputs(motors: Sequence[MotorPlan]) -> str:
     """
-    Return which pins the switches of *motor* take.
+    Return which pins the switches of *motors* take, or "" without any; which is which if it is one.
     """
-    switches = motor.end_switches
+    switches = [switch for motor in motors for switch in motor.end_switches]
+    if not switches:
+        return ""
+    if motors[1:]:
+        pins = listed([switch.pin.label for switch in switches])
+        return f"Pins {pins}: inputs for limit switches."
     pins = listed([f"{switch.pin.label} ({switch.signal})" for switch in switches])
     plural = ("s", "es", "inputs") if switches[1:] else ("", "", "an input")
-    return f"Pin{plural[0]} {pins}: {plural[2]} for the limit switch{plural[1]} of {motor.name}."
+    return (
+        f"Pin{plural[0]} {pins}: {plural[2]} for the limit switch{plural[1]} of {motors[0].name}."
+    )
 
 
 def _rules(plan: Plan) -> Iterator[str]:

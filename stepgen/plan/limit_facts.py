@@ -27,6 +27,28 @@ def limit_facts(motor: MotorPlan, f_cpu_hz: int) -> Iterator[Row]:
         yield "home", _home(stops.homing)
 
 
+def limit_row(motor: MotorPlan, f_cpu_hz: int) -> Iterator[Row]:
+    """
+    Yield the same in short facts, for tables with a row for each motor; without the switches' pins.
+    """
+    stops = motor.end_stops
+    if stops is None:
+        return
+    for switch in stops.switches:
+        yield switch.signal, "pulled up by the chip" if switch.pull_up else "no pull-up"
+    yield "range", _range(stops.range, motor.steps_per_mm) if stops.range else "every position"
+    homing = stops.homing
+    if homing:
+        fast, slow = (_speed(pace, f_cpu_hz) for pace in (homing.fast, homing.slow))
+        yield "homing to the", f"{homing.towards} switch"
+        yield "at steps/s", fast
+        yield "for steps at most", f"{homing.travel}"
+        yield "back by steps", f"{homing.back_off}"
+        yield "again at steps/s", slow
+        yield "the switch is position", f"{homing.position}"
+        yield "rest at", f"{homing.park}"
+
+
 def range_steps(ends: tuple[int, int]) -> str:
     """
     Return a range in steps.

@@ -67,7 +67,8 @@ for (const svg of document.querySelectorAll('svg')) {
         box.bottom > frame.bottom) found.outside.push(text.textContent);
     // Lines of text are higher than their letters: a quarter of it is air.
     const air = Math.min(box.width, box.height) / 4;
-    const [flat, tall] = box.width > box.height ? [0, air] : [air, 0];
+    const turned = text.getAttribute('transform')?.startsWith('rotate');
+    const [flat, tall] = turned ? [air, 0] : [0, air];
     boxes.push({name: text.textContent, left: box.left + flat, right: box.right - flat,
       top: box.top + tall, bottom: box.bottom - tall});
   }

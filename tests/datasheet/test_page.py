@@ -4,6 +4,7 @@ The datasheet as text: all that the plan says is there, unchanged, and nothing e
 
 import json
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -13,12 +14,16 @@ import pytest
 from stepgen import api
 from stepgen.datasheet.chart import motion_charts
 from stepgen.datasheet.page import PATH, render_datasheet
+from stepgen.datasheet.tagged import WIDEST
 from stepgen.datasheet.wiring import wiring_scene
 from stepgen.devices import Board, boards
 from stepgen.devices.outlines import OUTLINES, Outline, outline_of
+from stepgen.plan.model import Plan
+from tests.datasheet.large import LARGE, large
 from tests.datasheet.pages import SPECS, Reader, ends_of, page, report_of, spec, words
 
 MOST_BYTES = 50_000
+LONGEST_TAG = 16  # letters
 HOSTILE = (
     "</style><script>alert(1)</script>",
     '"\' onload=alert(1) x="',
@@ -63,6 +68,34 @@ def test_every_wire_is_drawn_from_its_pin_to_the_driver(path: Path) -> None:
             assert (title, start[1], start[2]) in pins
             assert float(way.rpartition("H")[2]) == edges[0]
             assert title in Reader(page(path)).titles
+
+
+@pytest.mark.parametrize("name", sorted(LARGE.keys() - {"switches"}))
+def test_each_pin_of_many_bears_a_tag(name: str, tmp_path: Path) -> None:
+    """
+    Where wires would be too many to draw, a tag at the end of each names motor and signal.
+
+    If a name is long, motors have numbers there, and in the tables. Each kind of driver is drawn.
+    """
+    plan = api.plan(large(name, tmp_path))
+    scene = wiring_scene(plan)
+    tags = {label.text for label in scene.labels if label.css.startswith("on-tag")}
+    titles = {stroke.title for stroke in scene.strokes if stroke.css.startswith("wire ")}
+    pins = {dot.title for dot in scene.dots if dot.css.startswith("pin ")}
+    names = [f"{motor.name} {end[0]}" for motor in plan.motors for end in ends_of(motor)]
+    is_long = max(map(len, names)) > LONGEST_TAG
+    ends = [
+        (f"{number}:" if is_long else motor.name, motor.name, *end)
+        for number, motor in enumerate(plan.motors, 1)
+        for end in ends_of(motor)
+    ]
+
+    assert tags == {f"{tag} {signal}" for tag, _, signal, _ in ends}
+    wanted = {f"motor {m}, {signal}: {pin.label} ({pin.bit.name})" for _, m, signal, pin in ends}
+    assert titles == pins == wanted
+    drivers = {motor.drive.title for motor in plan.motors}
+    assert drivers <= {label.text for label in scene.labels}
+    assert float(scene.width) <= WIDEST
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
@@ -144,8 +177,8 @@ def test_the_picture_shows_what_each_switch_does(tmp_path: Path) -> None:
     homing, sensed = (wiring_scene(api.plan(one)) for one in (spec("uno_homing"), path))
     levers = {stroke.title: stroke.d for stroke in homing.strokes if "switch of" in stroke.title}
 
-    assert re.search(r"l18 -8M", levers["motor slide, switch of the low end: closes there"])
-    assert re.search(r"l18 0M", levers["motor slide, switch of the high end: opens there"])
+    assert re.search(r"l16 -7M", levers["motor slide, switch of the low end: closes there"])
+    assert re.search(r"l16 0M", levers["motor slide, switch of the high end: opens there"])
     texts = [label.text for label in homing.labels]
     assert texts.index("LOW at the end") > 0
     assert "HIGH at the end" in texts
@@ -209,35 +242,84 @@ def test_text_of_a_spec_stays_text(tmp_path: Path, text: str) -> None:
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_the_figures_are_those_of_the_plan(path: Path) -> None:
     """
-    Highest rates, cycles of the interrupts and stretches with interrupts off.
+    Highest rates, cycles of the interrupts, stretches with interrupts off, and every wire.
+    """
+    assert_figures(path)
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_many_motors_have_theirs(name: str, tmp_path: Path) -> None:
+    """
+    So are those of twelve motors, where rows and columns that say the same are told once.
+    """
+    assert_figures(large(name, tmp_path))
+
+
+def assert_figures(path: Path) -> None:
+    """
+    Compare the tables of the page with the plan.
     """
     plan = api.plan(path)
     tables = Reader(page(path)).captions
-    safe = [row[:4] for row in tables["Highest rate without a lost step"][1:]]
+    safe = tables["Highest rate without a lost step"][1:]
     held = tables["How long the sketch may have interrupts off"][1:]
     cycles = {row[0]: row[1:] for row in tables["Step interrupts"]}
+    called = dict(zip((motor.name for motor in plan.motors), cycles["clocks"], strict=True))
 
-    assert safe == [
-        [name, limit.beside, str(int(limit.steps_per_second)), str(limit.period_cycles)]
-        for name, limits in plan.rates.items()
-        for limit in limits
-    ]
+    for name, limits in plan.rates.items():
+        told = iter([row for row in safe if row[0] == name])
+        for beside, row in spread(told, [limit.beside for limit in limits]):
+            limit = next(limit for limit in limits if limit.beside == beside)
+            figures = [str(int(limit.steps_per_second)), str(limit.period_cycles)]
+            assert row[2:4] == figures
+            assert limit.cause.endswith(row[4].partition(" (not proven")[0])
     assert [(row[1], row[3]) for row in held] == [
         (str(one.stretch_cycles), str(one.late_cycles)) for one in plan.held_off
     ]
     assert cycles["a step, response to RETI"] == [str(m.hot_path.usual_cycles) for m in plan.motors]
     assert cycles["longest, allowed by the plan"] == [str(m.isr_bound_cycles) for m in plan.motors]
     for motor in plan.motors:
-        assert [row[:3] for row in tables[f"{motor.name}: wires"][1:]] == [
-            [signal, pin.label, pin.bit.name] for signal, pin in ends_of(motor)
-        ]
+        (rows,) = (
+            rows for text, rows in tables.items() if motor.name in named(text, ": wires", plan)
+        )
+        assert wires_in(rows, called[motor.name]) == {
+            signal: f"{pin.label} ({pin.bit.name})" for signal, pin in ends_of(motor)
+        }
 
 
-def named_in(text: str, end: str) -> list[str]:
+def spread(rows: Iterator[list[str]], besides: list[str]) -> Iterator[tuple[str, list[str]]]:
+    """
+    Yield each of *besides* with its row: one row may stand for several that follow each other.
+    """
+    left = iter(besides)
+    for row in rows:
+        _, _, last = row[1].rpartition(" up to ")
+        for beside in left:
+            yield beside, row
+            if beside == last:
+                break
+    assert not list(left)
+
+
+def named(text: str, end: str, plan: Plan) -> list[str]:
     """
     Return the motors that *text* names before *end*; none if it ends otherwise.
     """
+    if text == f"all motors{end}":
+        return [motor.name for motor in plan.motors]
     return re.split(r", | and ", text.removesuffix(end)) if text.endswith(end) else []
+
+
+def wires_in(rows: list[list[str]], name: str) -> dict[str, str]:
+    """
+    Return pin and port bit of each signal of the motor called *name*, alone or one of several.
+    """
+    heading, *others = rows
+    if heading[0] == "signal":
+        return {signal: f"{pin} ({bit})" for signal, pin, bit, _ in others}
+    (row,) = (row for row in others if name == row[0])
+    cells = dict(zip(heading[1:], row[1:], strict=True))
+    return {signal: cell.partition(",")[0] for signal, cell in cells.items() if cell != "-"}
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
@@ -246,39 +328,37 @@ def test_the_rates_are_what_the_timer_makes(path: Path) -> None:
     The rate on the wire is f / (prescaler x ticks), the deviation that from the wanted rate.
 
     A period is the clock over the rate, cut off, and then cut off again to whole ticks; of an axis
-    it counts 1/256 clocks. Motors that have the same share a table; the RPM is that of those which
-    its heading names, or of all.
+    it counts 1/256 clocks. Motors that have the same share a table; the RPM is that of the
+    gear in its heading, or of all. Where the prescaler is 1, the ticks are the period.
     """
     plan = api.plan(path)
     tables = Reader(page(path)).captions
     for motor in plan.motors:
         ((heading, *rows),) = (
-            rows for caption, rows in tables.items() if motor.name in named_in(caption, ": rates")
+            rows for text, rows in tables.items() if motor.name in named(text, ": rates", plan)
         )
         axis = bool(motor.motion.ladder)
         assert len(rows) > 5
         assert axis == (heading[1] == "interval, 1/256 clocks")
         last = str(motor.motion.cruise_interval_256 if axis else plan.minimum_period_cycles)
         assert last in {row[1] for row in rows} if axis else last == rows[-1][1]
-        gears = [
-            column
-            for column, text in enumerate(heading)
-            if text == "RPM" or motor.name in named_in(text, " RPM")
-        ]
-        assert len(gears) == (motor.steps_per_turn is not None)
+        turn = motor.steps_per_turn
+        wanted_headings = {"RPM", f"RPM at {float(turn):.6g} a turn"} if turn else set()
+        gears = [column for column, text in enumerate(heading) if text in wanted_headings]
+        assert len(gears) == (turn is not None)
         for row in rows:
             wanted, period, *ticks = row[: heading.index("on the wire")]
             real, ppm = row[len(ticks) + 2 : len(ticks) + 4]
             exact = Fraction(plan.board.f_cpu_hz * 256, int(period))
             if not axis:
-                prescaler, count = map(int, ticks[0].split(" x "))
+                prescaler, count = map(int, ticks[0].split(" x ") if ticks else ("1", period))
                 exact = Fraction(plan.board.f_cpu_hz, prescaler * count)
                 assert 0 <= int(period) - prescaler * count < prescaler
             assert float(real) == pytest.approx(float(exact), rel=1e-7)
             assert int(ppm) == pytest.approx((float(exact) / float(wanted) - 1) * 1e6, abs=1)
             for gear in gears:
-                assert motor.steps_per_turn
-                rpm = float(exact * 60 / motor.steps_per_turn)
+                assert turn
+                rpm = float(exact * 60 / turn)
                 assert float(row[gear]) == pytest.approx(rpm, rel=1e-4)
 
 
@@ -336,7 +416,7 @@ def test_a_verification_fills_its_figures_in() -> None:
         ["RAM", "7501 bytes of 8192"],
         ["stack of the step interrupts", "7601 bytes, at most 7701"],
     ]
-    assert text.count("verified: 45 checks passed, gcc-5.4 on simavr 1.6") == 2
+    assert text.count("verified: 55 checks passed, gcc-5.4 on simavr 1.6") == 2
     assert "not verified" not in text
 
 
