@@ -2,10 +2,20 @@
 What boards look like from above: outlines and header positions, for pictures of their wiring.
 
 All lengths are in mil (1/1000 inch) from the upper left corner, x to the right and y down, with the
-USB connector on the left. Sources: the mechanical drawings of Arduino's boards (Uno and Mega share
-the shield headers, with 160 mil between D7 and D8) and of SparkFun's Pro Mini; those of the Micro,
-and where the Leonardo has its ICSP header and its LED RX, are from memory. They are good for a
-picture, not for making a board.
+USB connector on the left. Sources, which tests hold the pins against:
+
+- Uno, Nano: KiCad's footprints, in Module.pretty of KiCad/kicad-footprints,
+  Arduino_UNO_R3_WithMountingHoles.kicad_mod and Arduino_Nano.kicad_mod: edge, pins, holes, USB and
+  power.
+- Mega, Leonardo, Micro, Pro Mini, and the names of the Nano's pins: arduino-library.pretty of
+  Alarm-Siren/arduino-kicad-library, Arduino_Mega2560_R3_Shield.kicad_mod,
+  Arduino_Leonardo_Shield.kicad_mod, Arduino_Micro_Socket.kicad_mod,
+  Arduino_Pro_Mini_Socket.kicad_mod and Arduino_Nano_Socket.kicad_mod: edge, pins, and where USB is.
+
+Drawn schematically, since no such source was found: the chips, how deep connectors reach into the
+board, the serial header of the Pro Mini, the LED RX of the Leonardo, all that the Ethernet boards
+and the Leonardo ETH have unlike Uno and Leonardo, and the Uno Mini, which is half as large with a
+pitch of 50 mil and is drawn as an Uno.
 """
 
 from collections.abc import Iterator
@@ -135,8 +145,6 @@ UNO = Outline(
 UNO_MINI = replace(
     UNO, boards=("uno-mini",), parts=(Part("USB", -60, 850, 330, 360), UNO.parts[-1]), holes=()
 )
-"""Half as large, with a pitch of 50 mil; its headers lie as the Uno's."""
-
 ETHERNET = replace(
     UNO, boards=("ethernet",), parts=(Part("Ethernet", -80, 325, 860, 640), *UNO.parts[1:])
 )
@@ -146,11 +154,12 @@ LEONARDO = replace(
     boards=("leonardo",),
     headers=(
         *UNO.headers,
-        Header("D14 D15", 2450, 1000, "right", downward=True, is_inner=True),
-        Header("D16", 2550, 1100, "right", downward=True),
+        # Of the ICSP header, whose other pins are 5V, RESET and GND.
+        Header("D14 D15", 2505, 900, "right", downward=True, is_inner=True),
+        Header("D16", 2605, 1000, "right", downward=True),
         Header("D17", 1000, 450, "up", is_inner=True),  # the LED RX
     ),
-    parts=(Part("USB", -60, 500, 330, 320), *UNO.parts[1:]),
+    parts=(Part("USB", -39, 440, 330, 320), *UNO.parts[1:]),
 )
 
 LEONARDO_ETH = replace(
@@ -167,10 +176,10 @@ MEGA = Outline(
         (0, 0),
         (3840, 0),
         (3900, 60),
-        (3900, 510),
-        (4000, 610),
-        (4000, 1900),
-        (3900, 2000),
+        (3900, 500),
+        (4000, 600),
+        (4000, 1950),
+        (3900, 2050),
         (3900, 2100),
         (0, 2100),
     ),
@@ -199,7 +208,7 @@ MEGA = Outline(
     ),
     parts=(_USB_B, _JACK, Part("chip", 1900, 850, 700, 600)),
     title=(1900, 560),
-    holes=((600, 100), (550, 2000)),
+    holes=((600, 100), (550, 2000), (2600, 700), (3800, 2000)),
 )
 
 NANO = Outline(
@@ -211,7 +220,7 @@ NANO = Outline(
         Header("D12 D11 D10 D9 D8 D7 D6 D5 D4 D3 D2 GND RST D0 D1", 150, 50, "up"),
         Header("D13 3V3 AREF A0 A1 A2 A3 A4 A5 A6 A7 5V RST GND VIN", 150, 650, "down"),
     ),
-    parts=(Part("USB", -60, 200, 340, 300), Part("chip", 700, 220, 380, 150)),
+    parts=(Part("USB", -100, 200, 400, 300), Part("chip", 700, 220, 380, 150)),
     title=(890, 470),
 )
 
@@ -221,25 +230,25 @@ PRO_MINI = Outline(
     height=700,
     corners=((0, 0), (1300, 0), (1300, 700), (0, 700)),
     headers=(
-        Header("RAW GND RST VCC A3 A2 A1 A0 D13 D12 D11 D10", 100, 50, "up"),
-        Header("A4 A5", 500, 150, "up", is_inner=True),
-        Header("D1 D0 RST GND D2 D3 D4 D5 D6 D7 D8 D9", 100, 650, "down"),
+        Header("RAW GND RST VCC A3 A2 A1 A0 D13 D12 D11 D10", 150, 50, "up"),
+        Header("A5 A4", 495, 165, "up", is_inner=True),
+        Header("D1 D0 RST GND D2 D3 D4 D5 D6 D7 D8 D9", 150, 650, "down"),
     ),
-    parts=(Part("serial", -40, 190, 120, 320), Part("chip", 480, 300, 380, 110)),
+    parts=(Part("serial", -40, 190, 180, 320), Part("chip", 480, 300, 380, 110)),
     title=(670, 490),
 )
 
 MICRO = Outline(
     boards=("micro",),
-    width=1900,
-    height=700,
-    corners=((0, 0), (1900, 0), (1900, 700), (0, 700)),
+    width=1909,
+    height=710,
+    corners=((0, 0), (1909, 0), (1909, 710), (0, 710)),
     headers=(
-        Header("D12 D11 D10 D9 D8 D7 D6 D5 D4 D3 D2 GND RST D0 D1 D17 D16", 150, 50, "up"),
-        Header("D13 3V3 AREF A0 A1 A2 A3 A4 A5 - - 5V RST GND VIN D14 D15", 150, 650, "down"),
+        Header("D12 D11 D10 D9 D8 D7 D6 D5 D4 D3 D2 GND RST D0 D1 D17 D16", 154, 56, "up"),
+        Header("D13 3V3 AREF A0 A1 A2 A3 A4 A5 - - 5V RST GND VIN D14 D15", 154, 656, "down"),
     ),
-    parts=(Part("USB", -60, 200, 300, 300), Part("chip", 700, 220, 280, 280)),
-    title=(1250, 370),
+    parts=(Part("USB", -33, 216, 273, 280), Part("chip", 640, 220, 400, 280)),
+    title=(1420, 370),
 )
 
 OUTLINES = (UNO, UNO_MINI, ETHERNET, LEONARDO, LEONARDO_ETH, MEGA, NANO, MICRO, PRO_MINI)

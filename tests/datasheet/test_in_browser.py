@@ -15,7 +15,8 @@ from tests.datasheet.pages import page, report_of, spec
 
 DARK = {"light": (), "dark": ("--force-dark-mode",)}
 PAPER = {"light": (0xFF, 0xFF, 0xFF), "dark": (0x12, 0x17, 0x1D)}  # --paper in style.css.j2
-# A shield on an Uno, two motors on a Mega, small boards with four wires, ramps, and timer 2.
+# A shield on an Uno, two motors on a Mega, small boards with four wires, ramps, timer 2,
+# and boards with an ATmega32U4.
 LOOKED_AT = (
     "uno_motor_shield",
     "mega_pan_tilt",
@@ -24,6 +25,8 @@ LOOKED_AT = (
     "mega_stacked_shields_variable",
     "uno_28byj48_ramp",
     "uno_homing",
+    "leonardo_motor_shield",
+    "micro_slider",
 )
 
 
