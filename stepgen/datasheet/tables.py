@@ -25,7 +25,7 @@ class Table:
     heading: Row
     rows: tuple[Row, ...]
     note: str = ""
-    kind: str = "facts"
+    kind: str = "plain"
 
     @property
     def is_wide(self) -> bool:

@@ -35,7 +35,7 @@ def limit_tables(plan: Plan) -> Iterator[Table]:
     if not motors[1:]:
         for motor in motors:
             alone = tuple(limit_facts(motor, f_cpu_hz))
-            yield Table(f"{motor.name}: limits", ("", "is"), alone)
+            yield Table(f"{motor.name}: limits", ("limit", "is"), alone)
         return
     facts = [dict(limit_row(motor, f_cpu_hz)) for motor in motors]
     columns = _in_order(name for row in facts for name in row)

@@ -2,10 +2,12 @@
 What several motors share is told once, and nothing is lost by it.
 """
 
+import re
+
 from stepgen import api
 from stepgen.datasheet.outcome import passed_checks
 from stepgen.datasheet.tables import Table, told_once
-from tests.datasheet.pages import report_of, spec
+from tests.datasheet.pages import page, report_of, spec
 
 HEADING = ("motor", "drive", "pin", "none")
 
@@ -56,3 +58,15 @@ def test_checks_that_several_motors_passed_are_told_once() -> None:
         ("x, y and z", "runs"),
         ("x", "homing"),
     ]
+
+
+def test_no_table_is_laid_out_as_another_kind_of_element() -> None:
+    """
+    Its class in the style is none that says how something else is laid out.
+    """
+    text = page(spec("uno_homing"))
+    kinds = set(re.findall(r'<table class="(\w+)">', text))
+    others = set(re.findall(r'<(?:dl|div|header) class="(\w+)">', text))
+
+    assert kinds == {"motors", "wires", "plain", "safe", "numbers", "figures"}
+    assert not kinds & others
