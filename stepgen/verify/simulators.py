@@ -192,7 +192,7 @@ AVR8JS = Simulator(
     longest_scenario_cycles=_AVR8JS_CYCLES,
     corrected=frozenset(
         {"prescaler-phase", "count-kept", "start-order", "flag-sbi", "port-write-cycles"}
-        | {"ctc-wrap", "compare-flag-edge", "timer2-compare"}
+        | {"ctc-wrap", "compare-flag-edge", "timer2-compare", "channel-c"}
         | {"instruction-cycles", "instruction-cycles-32u4", "usb-frames"}
         | {"instruction-cycles-1280", "instruction-cycles-2560"}
         | _RESETS

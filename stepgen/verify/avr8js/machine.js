@@ -8,8 +8,8 @@
 
 const { CPU, AVRIOPort, AVRTimer, AVRUSART, avrInstruction } = require(process.argv[2]);
 const {
-  accessCycles, accessInTime, clearOnlyWrittenFlags, compareWhenLeft, countOnToMax, letPrescalerRun,
-  raiseEdge,
+  accessCycles, accessInTime, clearChannelC, clearOnlyWrittenFlags, compareWhenLeft, countOnToMax,
+  letPrescalerRun, raiseEdge,
 } = require("./timers.js");
 const { plugIn } = require("./usb.js");
 const { MCUSR, PORF, WDRF, addRawWatchdog, addWatchdog } = require("./watchdog.js");
@@ -159,6 +159,7 @@ class Machine {
       letPrescalerRun(this.cpu, timer);
       accessInTime(this.cpu, timer);
       clearOnlyWrittenFlags(this.cpu, timer);
+      clearChannelC(this.cpu, timer);
       countOnToMax(timer);
       compareWhenLeft(this.cpu, timer);
     }

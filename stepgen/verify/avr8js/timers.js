@@ -56,6 +56,20 @@ function clearOnlyWrittenFlags(cpu, { config: { TIFR } }) {
   };
 }
 
+// Channel C, too, no longer waits once its flag or its enable bit is cleared.
+function clearChannelC(cpu, { OCFC, config: { OCRC, TIFR, TIMSK } }) {
+  if (!OCRC) return;
+  const clear = cpu.writeHooks[TIFR], enable = cpu.writeHooks[TIMSK];
+  cpu.writeHooks[TIFR] = (value, old, at, mask) => {
+    cpu.clearInterruptByFlag(OCFC, value & mask);
+    return clear(value, old, at, mask);
+  };
+  cpu.writeHooks[TIMSK] = (value, ...access) => {
+    cpu.updateInterruptEnable(OCFC, value);
+    return enable(value, ...access);
+  };
+}
+
 // Beyond TOP the counter goes on to MAX; avr8js takes it back at once.
 function countOnToMax(timer) {
   const { get } = Object.getOwnPropertyDescriptor(Object.getPrototypeOf(timer), "TOP");
@@ -107,6 +121,6 @@ function raiseEdge(interrupt, timer, correct) {
 }
 
 module.exports = {
-  accessCycles, accessInTime, clearOnlyWrittenFlags, compareWhenLeft, countOnToMax, letPrescalerRun,
-  raiseEdge,
+  accessCycles, accessInTime, clearChannelC, clearOnlyWrittenFlags, compareWhenLeft, countOnToMax,
+  letPrescalerRun, raiseEdge,
 };

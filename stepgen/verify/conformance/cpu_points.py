@@ -161,6 +161,21 @@ def masked_flag(lab: Lab) -> Iterator[str]:
             yield f"runs at {late}, on the chip one between {at[7]} and {at[8]}"
 
 
+@point("channel-c", "A cleared flag or enable bit of compare C ends its wait", "15.8", MEGA_CHIP)
+def channel_c(lab: Lab) -> Iterator[str]:
+    """
+    An interrupt that waits is not run once its flag or its enable bit is cleared.
+    """
+    with lab.running("channel_c") as machine:
+        machine.run_until_mark(6, limit_cycles=20_000)
+        at = _marks(machine)
+        entered = cycles(machine, Kind.ISR_ENTER)
+        for mark, cleared, wanted in ((1, "enable bit", 0), (3, "flag", 0), (5, "", 1)):
+            runs = sum(at[mark] < cycle < at[mark + 1] for cycle in entered)
+            if runs != wanted:
+                yield f"{runs} runs with {cleared or 'nothing'} cleared, on the chip {wanted}"
+
+
 def _port_writes(port_h: list[int]) -> Judge:
     """
     Return the judge of writes to PINx; *port_h* is what port H, beyond in and out, shows.

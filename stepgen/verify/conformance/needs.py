@@ -33,7 +33,7 @@ OF_CHIP: Mapping[str, Sequence[str]] = {
         *("usb-frames", "uart-32u4"),
     ),
     MEGA_1280_CHIP: ("instruction-cycles-1280", "response-1280", "four-timers-1280"),
-    MEGA_CHIP: ("instruction-cycles-2560", "response-2560", "four-timers"),
+    MEGA_CHIP: ("instruction-cycles-2560", "response-2560", "four-timers", "channel-c"),
 }
 _OF_CHANNELS = ("normal-compare", "two-channels", "flag-write")
 OF_TIMING: Mapping[str, Sequence[str]] = {
