@@ -215,10 +215,10 @@ SHARED void leftEnergise() {
 // from 1 on; then the same when it made the step itself; then both with a limit in
 // milliseconds.
 static const uint16_t leftElapsed[] PROGMEM = {
-    225, 28, 3, 0, 0,
-    235, 29, 3, 0, 0,
-    265, 33, 4, 1, 0,
-    275, 34, 4, 1, 0,
+    230, 28, 3, 0, 0,
+    240, 30, 3, 0, 0,
+    270, 33, 4, 1, 0,
+    280, 35, 4, 1, 0,
 };
 
 // Stops the timer; no step comes after this. Only while interrupts are off.

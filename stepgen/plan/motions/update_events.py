@@ -9,8 +9,9 @@ from stepgen.spec import Motor
 from stepgen.spec.motions.update_events import UpdateEvents
 
 _TIMED_CYCLES = 60
-# With a time-out each step looks at the clock, and the handler once more.
-_TIMED_LOOK_CYCLES = 19
+# With a time-out each step looks at the clock, and the handler once more: between what the two
+# compilers take, which is ten cycles apart.
+_TIMED_LOOK_CYCLES = 24
 _TIMED_CALL_CYCLES = 30
 
 
