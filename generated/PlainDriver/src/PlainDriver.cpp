@@ -95,7 +95,7 @@ struct VariableMotion {
   void (*onFault)();
 };
 
-constexpr uint16_t kFar = 0x7FFF;  // as many milliseconds as the interrupt can see ahead
+constexpr uint16_t kFarMillis = 0x7FFF;  // as many milliseconds as the interrupt can see ahead
 
 // What millis() returns. Only while interrupts are off.
 SHARED uint32_t millisNow() { return timer0_millis; }
@@ -285,16 +285,16 @@ SHARED void motorFault(uint8_t bits) {
   motion.status = (motion.status & ~MOTOR_STAT_FAULT_CALLED) | bits;
 }
 
-// Milliseconds until a limit ends, at most kFar; 0 at its end. Only while interrupts are off.
+// Milliseconds until a limit ends, at most kFarMillis; 0 at its end. Only while interrupts are off.
 SHARED uint16_t motorMillisLeft() {
   auto &motion = near(motorMotion);
   if (motion.mode & kLimited) {
     const uint32_t gone = timer0_millis - motion.start;
     if (gone >= motion.limit) return 0;
     const uint32_t left = motion.limit - gone;
-    if (left < kFar) return left;
+    if (left < kFarMillis) return left;
   }
-  return kFar;
+  return kFarMillis;
 }
 
 // What the events are counted by: the steps made (less those of the whole move), or millis().
