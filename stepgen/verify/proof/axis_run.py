@@ -83,6 +83,7 @@ class AxisRun:
         """
         axis = self.library.axes[self.motor]
         ladder, self._cruise_256, self._stops = axis.ladder, axis.cruise_256, axis.stops
+        self._releases = axis.releases
         self._ramp = Ramp(ladder)
         self._goal = ladder.levels[ladder.goal(self._cruise_256)].height
         handler = self.library.functions[f"{_VECTOR}{self.motor}_boundary"]
@@ -407,9 +408,9 @@ class AxisRun:
 
     def _state(self) -> AxisState:
         values = self._machine.memory.snapshot()
-        return AxisState(
-            values, self.library.source, self.motor, self._ramp, self._stops, self._named
-        )
+        ramp, stops, releases = self._ramp, self._stops, self._releases
+        source = self.library.source
+        return AxisState(values, source, self.motor, ramp, stops, releases, self._named)
 
     def _assume(self, state: AxisState) -> None:
         for claim in [*invariant(state).values(), *facts(state)]:

@@ -36,6 +36,7 @@ class AxisState:
         motor: The motor's name.
         ramp: What it climbs on.
         stops: Its limits, if it has such.
+        releases: Whether its coils go off at rest, an interval after the last step.
         named: Gives a term a name.
     """
 
@@ -43,7 +44,8 @@ class AxisState:
     source: Source
     motor: str
     ramp: Ramp
-    stops: EndStops | None = None
+    stops: EndStops | None
+    releases: bool
     named: Callable[[Any], Any] = lambda value: value
 
     def of(self, name: str) -> Any:  # noqa: ANN401 - z3 has no types
@@ -203,7 +205,9 @@ def invariant(state: AxisState) -> Claims:
         "it runs or it coasts": z3.Not(z3.And(running, state.is_in(COAST))),
         "1 to 255 steps are counted down while it moves": z3.Implies(moves, state.count != 0),
         "a level is as high as the motor may climb": state.ramp.is_level(state.of("goal")),
-        "it coasts for laps": z3.Implies(state.is_in(COAST), state.of("lapsLeft") != 0),
+        "it coasts for laps, if at all": z3.Implies(
+            state.is_in(COAST), z3.And(state.releases, state.of("lapsLeft") != 0)
+        ),
         "at rest nothing is left": z3.Implies(z3.Not(running), z3.Extract(31, 0, state.left) == 0),
         "at rest no level follows": z3.Implies(z3.Not(running), state.of("levels") == 0),
         "at rest it is where it is to be": z3.Implies(

@@ -45,11 +45,13 @@ class Axis:
         ladder: What it climbs on.
         cruise_256: The shortest interval of it, in 1/256 clocks.
         stops: Its limits, if it has such.
+        releases: Whether its coils go off at rest, an interval after the last step.
     """
 
     ladder: Ladder
     cruise_256: int
     stops: EndStops | None
+    releases: bool
 
 
 @dataclass(frozen=True)
@@ -126,7 +128,12 @@ def read_library(folder: Path, compiler: Path | str, plan: Plan, scratch: Path) 
             if motor.command_timeout_ms is not None
         },
         axes={
-            motor.name: Axis(ladder, motor.motion.cruise_interval_256, motor.end_stops)
+            motor.name: Axis(
+                ladder,
+                motor.motion.cruise_interval_256,
+                motor.end_stops,
+                motor.releases_at_rest,
+            )
             for motor in plan.motors
             if (ladder := ladder_of(motor.motion))
         },

@@ -19,6 +19,7 @@ _SLOPE = z3.Function("slope", _BYTE, _LONG)
 _HEIGHT = z3.Function("height", _BYTE, _BYTE, _WORD)
 _INTERVAL = z3.Function("interval", _BYTE, _BYTE, _LONG)
 _SHIFTS = z3.Function("shifts", _BYTE, _BYTE)
+_SLOW = z3.Function("laps", _BYTE, z3.BoolSort())
 _IS_LEVEL = z3.Function("a level is so high", _WORD, z3.BoolSort())
 
 _MOST_STEPS = 65_000
@@ -129,8 +130,8 @@ class Ramp:
             there, z3.And(self.interval(row, level + 1) == here - slope, z3.ULE(slope, here))
         )
         yield z3.Implies(there, z3.ULE(here, self.ladder.first_interval_256))
-        alone = z3.And(self.levels(row) == 1, self.steps(row) == 1)
-        yield z3.Implies(z3.And(there, z3.UGE(here, LAPPED_256)), alone)
+        yield z3.Implies(there, z3.UGE(here, LAPPED_256) == _SLOW(row))
+        yield z3.Implies(z3.And(there, _SLOW(row)), self.steps(row) == 1)
         high = self.height(row, level)
         above = high + z3.ZeroExt(8, self.steps(row))
         below_end = z3.ULE(above, self.height(row, self.levels(row)))
@@ -204,11 +205,13 @@ class Ramp:
         """
         levels = iter(self.ladder.levels)
         for number, rung in enumerate(self.ladder.rungs):
-            for _ in range(rung.levels):
-                level = next(levels)
-                slow = level.interval_256 >= LAPPED_256
-                if slow and (rung.levels, rung.steps) != (1, 1):
-                    yield f"row {number} has several steps, of laps"
+            row = [next(levels) for _ in range(rung.levels)]
+            slow = {level.interval_256 >= LAPPED_256 for level in row}
+            if len(slow) != 1:
+                yield f"row {number} has levels with laps and without"
+            if True in slow and rung.steps != 1:
+                yield f"row {number} has levels of several steps, of laps"
+            for level in row:
                 if not 0 <= rung.slope_256 <= level.interval_256:
                     yield f"row {number} leads to less than no interval"
             if rung.steps not in LENGTHS:
