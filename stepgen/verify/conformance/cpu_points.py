@@ -164,7 +164,7 @@ def masked_flag(lab: Lab) -> Iterator[str]:
 @point("channel-c", "A cleared flag or enable bit of compare C ends its wait", "15.8", MEGA_CHIP)
 def channel_c(lab: Lab) -> Iterator[str]:
     """
-    Cleared while interrupts are off, neither flag nor enable bit leaves an interrupt that runs.
+    With its flag or its enable bit cleared, an interrupt that waits does not run.
     """
     with lab.running("channel_c") as machine:
         machine.run_until_mark(6, limit_cycles=20_000)
